@@ -19,20 +19,20 @@ pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
 # Version 1 or 2: drivers/gpio knows both.
 pkg_check_modules(GPIOD REQUIRED IMPORTED_TARGET libgpiod)
 pkg_check_modules(GEOGRAPHICLIB REQUIRED IMPORTED_TARGET geographiclib)
-# The live page and the metrics.
+# These two serve the live page and the metrics.
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 pkg_check_modules(PROMETHEUS REQUIRED IMPORTED_TARGET prometheus-cpp-core)
 pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
-# Cameras behind libcamera are left out where it is missing.
+# Without libcamera, the build leaves out the driver for its cameras.
 pkg_check_modules(LIBCAMERA IMPORTED_TARGET libcamera)
 
 # Debian's libonnx-dev ships the protobuf messages of the ONNX format as a library of their own.
 find_path(ONNX_INCLUDE_DIR onnx/onnx_pb.h REQUIRED)
 find_library(ONNX_PROTO_LIBRARY onnx_proto REQUIRED)
 
-# OpenCV's own CMake package needs all of its modules, which are 280 packages more.
+# OpenCV's own CMake package needs all of its modules, and they are in 280 more packages.
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 foreach(module core imgproc)
   find_library(OPENCV_${module}_LIBRARY opencv_${module} REQUIRED)

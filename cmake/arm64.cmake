@@ -1,5 +1,6 @@
 # Builds for arm64 on an amd64 machine that has Debian's cross compiler and the arm64 libraries
-# (script/package makes such a root). The environment names this file to every CMake of a build:
+# (script/package makes such a root). Set this variable, so that every CMake run of a build uses this
+# file:
 #   CMAKE_TOOLCHAIN_FILE=$PWD/cmake/arm64.cmake script/build vehicle
 # qemu runs the programs that the build and the tests need.
 set(CMAKE_SYSTEM_NAME Linux)

@@ -1,6 +1,7 @@
 // The command bevloc of a vehicle. It contains no simulator. The program with the simulator is
-// evaluation/bevloc.cpp. If that one is installed, too (package bevloc-sim), this one passes on the
-// commands that it does not have, and `completion`, which has to know the commands of both.
+// evaluation/bevloc.cpp (package bevloc-sim). If it is installed, this program passes on to it the
+// commands that this program lacks, and `completion`, which must know the commands of both
+// programs.
 #include <cstdio>
 #include <filesystem>
 #include <string>

@@ -1,4 +1,4 @@
-// Instruction sets that this CPU has and that the hand-written kernels need. NEON is not asked for,
+// Tests which instruction sets of the hand-written kernels this CPU has. There is no test for NEON,
 // because every arm64 CPU has it.
 #pragma once
 

@@ -24,8 +24,8 @@ inline Duration read_clock(clockid_t clock) {
   return duration_of(time);
 }
 
-/// The time of CLOCK_MONOTONIC. Only code that compares with time stamps of the kernel, or waits in
-/// the kernel, calls it. All other code takes the time from a drivers::Clock.
+/// The time of CLOCK_MONOTONIC. Only code that compares times with time stamps of the kernel, or
+/// that waits in the kernel, calls it. All other code takes the time from a drivers::Clock.
 inline Time steady_now() {
   return Time(read_clock(CLOCK_MONOTONIC));
 }

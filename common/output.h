@@ -1,4 +1,5 @@
-// What a program prints, and whether it arrived.
+// Turns exceptions of a program into errors, and makes sure that its output arrives and is
+// printable.
 #pragma once
 
 #include <cerrno>

@@ -129,7 +129,7 @@ class YamlMap {
   void reject_key(std::string_view key, std::string_view found, std::string_view wanted);
   /// Reports a word that other words exclude.
   void reject_word(std::string_view key, std::string_view found, std::string_view wanted);
-  /// Reports the error of another file, whose message names the place there, as it is.
+  /// Reports an error in another file. Its message stays as it is, because it names that file.
   void reject_file(const Error& error);
 
   /// Returns the first mistake of the whole file, or the first key that was not read. Call it once,

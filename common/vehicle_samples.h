@@ -17,8 +17,8 @@ struct OdometrySample {
   /// the last second, in standard deviations. It is empty while a bias of 1 degree/s would not be
   /// noticeable.
   std::optional<double> wheel_lean{};
-  /// Whether noise changes speed or yaw rate from sample to sample while the vehicle drives. It
-  /// does not if their steps are coarse.
+  /// Whether noise changes speed or yaw rate from sample to sample while the vehicle drives. If the
+  /// bus carries both in coarse steps, equal samples in a row are normal.
   bool has_fine_steps = true;
 };
 

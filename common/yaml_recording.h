@@ -45,8 +45,9 @@ struct YamlDecision {
   std::string taken;
 };
 
-/// What one pass of a reader over YamlMap::record() asks for. A reader asks for other keys after
-/// other words, so it takes several passes, each with its own `options`. One thread.
+/// The keys that a reader asks for in one pass over YamlMap::record(). They depend on the words
+/// that it has read, so all keys appear only in several passes, each with its own `options`. One
+/// thread.
 struct YamlRecording {
   static constexpr const char* kPresent = "?present";
   static constexpr const char* kAbsent = "?absent";
@@ -77,7 +78,7 @@ struct YamlRecording {
     return true;
   }
 
-  /// Decides whether this pass has a key in whose place another one can be read.
+  /// Decides whether this pass has a key that another key can replace.
   bool test_in_place_of(const std::string& path) {
     tested.insert(path);
     return decide(path, {kPresent, kAbsent}) == kPresent;

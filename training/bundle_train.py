@@ -2,9 +2,9 @@
 """Trains on the machine to which this bundle was copied: ./train [OPTIONS of training.train]
 
 It needs Linux on x86-64, Python 3.10 or newer, PyTorch 1.13 or newer (with CUDA, if a GPU is to
-train) and NumPy. The options of the bundle (options.json) come first; those of the
-command line override them. README.md beside this file says more. training/bundle.py copies this
-file into a bundle as `train`.
+train) and NumPy. The options of the bundle (options.json) come first; those of the command line
+override them. README.md beside this file says more. training/bundle.py copies this file into a
+bundle as `train`.
 """
 
 import importlib.metadata
@@ -35,7 +35,7 @@ def missing() -> str:
             return f"{sys.executable}: found no {name}, wanted it; install the package {package}"
     try:
         torch = importlib.metadata.version("torch")
-    except importlib.metadata.PackageNotFoundError:  # a PyTorch without metadata says nothing
+    except importlib.metadata.PackageNotFoundError:  # this PyTorch does not state its version
         return ""
     numbers = tuple(map(int, re.findall(r"\d+", torch)[:2]))
     if numbers < LEAST_TORCH:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 FIRST_TRAINING_SEED = 2**32  # evaluation seeds lie below it (sim/world/world_generator.h)
 # Each sampler of a run has 2^28 seeds (SEED_STRIDE in training/data.py). The first 2^26 of them are
-# for the run itself. The others begin this far behind the run's own, and each has 2^26 too:
+# for the run itself. Each of these uses has 2^26 more, which begin this far after the run's own:
 USUAL_SEEDS = 2**26  # samples with the usual nuisances of a run with usual_share
 CALIBRATION_SEEDS = 2**27  # ranges of int8 and scales of the solvers
 QAT_SEEDS = 3 * 2**26  # quantization-aware training
@@ -43,7 +43,7 @@ class TrainingConfig:
     map: str = ""  # HD map of the recorded drives
     rig: str = ""  # their calibration; empty: as recorded
     reference: str = "file"  # or "own", "truth": where their reference poses come from
-    simulated_share: float = 0.5  # of the samples beside recorded ones
+    simulated_share: float = 0.5  # share of simulated samples in a run on recorded drives
 
     seed: int = FIRST_TRAINING_SEED
     batch: int = 8  # samples of all processes together
@@ -52,7 +52,7 @@ class TrainingConfig:
     precision: str = "auto"  # or float32, bfloat16
     drop_camera_probability: float = 0.15
     nuisances: str = "street"  # or "strong", "usual"; simulator only
-    usual_share: float = 0.0  # of the simulated samples with usual nuisances instead
+    usual_share: float = 0.0  # share of the simulated samples that have usual nuisances
     photos: str = ""  # folder of script/photos; empty: textures of the simulator alone
 
     learning_rate: float = 2e-3

@@ -124,7 +124,7 @@ def metadata(net: BevNetwork, result: ResultScales) -> dict[str, str]:
 
 
 def _range_statements(rigs: list[RigRanges]) -> dict[str, str]:
-    """What the model states about rigs that differed; nothing if there is none."""
+    """The ranges that the model states if it was trained on several rigs; empty for one rig."""
     if not rigs:
         return {}
     values = {

@@ -18,7 +18,7 @@ from training.solver import Posterior, PoseSolvers, estimate, standardise
 RATE, FINAL_RATE = 0.2, 0.02
 ROUNDS = 3
 RIGHT_M = (1.0, 0.3)  # a match with smaller errors in x and y has found the right place
-TYPICAL_SCORE = 0.32  # of such matches, by the network for which the limits of evidence were chosen
+TYPICAL_SCORE = 0.32  # their mean score when the limits of evidence were chosen
 
 ScoringSolver = Callable[[Tensor, Tensor], NativeSolution]
 

@@ -46,6 +46,6 @@ class _JointVolume(torch.autograd.Function):
 
 
 def joint_volume(bev: Tensor, features_map: Tensor, block_cells: int = 5) -> Tensor:
-    """Scores [batch, 21 yaw, 21 x, 11 y] of standardised features [batch, C, 100, 50]. For
-    features for which native.runs_natively()."""
+    """Scores [batch, 21 yaw, 21 x, 11 y] of standardised features [batch, C, 100, 50].
+    native.runs_natively() must hold for the features."""
     return _JointVolume.apply(bev, features_map, block_cells)

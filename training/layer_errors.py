@@ -1,4 +1,4 @@
-"""Measures the quantization error of every layer: with only it quantized, and with all layers."""
+"""Measures the quantization error of each layer: if only this one is quantized, and if all are."""
 
 from __future__ import annotations
 

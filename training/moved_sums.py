@@ -50,6 +50,6 @@ def moved_sums(
     """Sums over the lattice's cells and all channels of features [batch, C, 100, 50], with F_B
     moved by each of the corrections [batch, count, 3]: of moved features times F_M, of moved
     features and of their squares, [batch, count, 3] in float64. The corrections must lie within the
-    range of the paper's hypotheses; they get no gradient. For
-    features for which native.runs_natively()."""
+    range of the paper's hypotheses; they get no gradient. native.runs_natively() must hold for the
+    features."""
     return _MovedSums.apply(bev, features_map, corrections, lattice)

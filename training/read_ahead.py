@@ -36,6 +36,6 @@ class ReadAhead:
     def close(self) -> None:
         """Waits for the batch that is being read, and closes the stream."""
         if self._ahead is not None:
-            self._ahead.exception()  # waits; nobody needs the batch, or why it is missing
+            self._ahead.exception()  # waits; the batch or its error is not needed any more
         self._thread.shutdown()
         self._stream.close()

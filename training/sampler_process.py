@@ -90,8 +90,8 @@ class DriveFacts:
 @dataclass(frozen=True)
 class Drives:
     """Recorded drives (training/drives/drive_set.h). `rig`: a calibration instead of the recorded
-    ones. `reference`: file, own or truth. `skip_bad`: whether the next good place replaces that of
-    a bad sample; else a bad one ends the program."""
+    ones. `reference`: file, own or truth. `skip_bad`: whether the next good sample replaces a bad
+    one; otherwise a bad sample ends the program."""
 
     recordings: str
     map: str

@@ -36,7 +36,7 @@ def start_with(net: BevNetwork, path: Path, make_batches: Callable[[], list[Batc
 
 
 def load_model_file(net: BevNetwork, path: Path) -> None:
-    """Loads the folded convolutions; the batch normalisations change nothing but add the bias."""
+    """Loads the folded convolutions; the batch normalisations only add the bias."""
     import onnx  # a training bundle starts from a checkpoint and does without it
     from onnx import numpy_helper
 

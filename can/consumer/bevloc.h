@@ -30,8 +30,8 @@ enum bevloc_answer {
   BEVLOC_USABLE,
   BEVLOC_NO_POSE,        /* no complete pose or no LOC_Status yet */
   BEVLOC_TIMEOUT,        /* no pose for three cycles, or only one pose since such a pause, or no
-                            LOC_Status for three of its cycles, or the clock was set back: `now_us`
-                            is more than a cycle before one of them */
+                            LOC_Status for three of its cycles, or your clock was set back: `now_us`
+                            is more than a cycle before the arrival of the pose or LOC_Status */
   BEVLOC_NOT_VALID,      /* the state is neither TRACKING nor DEGRADED */
   BEVLOC_FOREIGN_SENDER, /* somebody else sends the vehicle's messages (Why_ForeignSender) */
   BEVLOC_NOT_AVAILABLE,  /* a value, the integrity risk, or the protection level of an axis with
@@ -51,7 +51,7 @@ struct bevloc_alert_limits {
 enum { BEVLOC_PARTS = 8 };
 
 struct bevloc_pose {
-  uint64_t received_us; /* when its last frame arrived; the pose is that of the moment of sending */
+  uint64_t received_us; /* when its last frame arrived; the pose holds at the moment of sending */
   double age_ms;        /* age of the newest images that the pose comes from */
   bool has_capture;     /* whether the pose comes from images */
   uint32_t capture_us;  /* when they were taken, on the localizer's clock, modulo 2^32 */
@@ -198,7 +198,7 @@ static inline bool bevloc_check(struct bevloc_receiver* receiver,
 }
 
 /* Whether at most `limit_us` passed since a time stamp. Stamps may be out of order by one cycle of
-   their message. If one is later than that, the clock was set back, and its age is not known. */
+   their message. If a stamp lies further ahead, the clock was set back and its age is unknown. */
 static inline bool bevloc_is_fresh(uint64_t now_us, uint64_t stamp_us, uint32_t limit_us,
                                    const struct bevloc_message* message) {
   const int64_t age_us = (int64_t)(now_us - stamp_us);
@@ -348,7 +348,7 @@ static inline bool bevloc_receive(struct bevloc_receiver* receiver, uint32_t id,
   return false;
 }
 
-/* A limit of 0 does not count. No level is within a limit that is negative or not a number. */
+/* No level is beyond a limit of 0. Every level is beyond a negative limit or one that is NaN. */
 static inline bool bevloc_is_beyond(double limit, double level) {
   return limit != 0 && !(level <= limit);
 }

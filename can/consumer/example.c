@@ -31,7 +31,7 @@ struct printer {
 
 static void print_line(struct printer* printer, uint64_t now_us, enum bevloc_answer answer) {
   const struct bevloc_pose* pose = &printer->receiver.pose;
-  /* Negative after the clock was set back. */
+  /* It is negative if the clock was set back. */
   const int64_t since_first_us = (int64_t)(now_us - printer->first_us);
   printf("%.3f %s", (double)since_first_us * 1e-6, bevloc_answer_name(answer));
   if (answer == BEVLOC_USABLE) {
@@ -99,7 +99,7 @@ static int read_log(struct printer* printer, const char* path) {
   return 0;
 }
 
-/* An open socket that waits for 10 ms at most and stamps the frames that arrive, or -1. */
+/* Returns a socket that waits at most 10 ms for a frame and stamps each frame, or -1. */
 static int open_interface(const char* interface) {
   struct sockaddr_can address = {0};
   const struct timeval patience = {0, 10000};
@@ -154,7 +154,7 @@ static bool receive(int bus, struct canfd_frame* frame, uint64_t* age_us) {
   return true;
 }
 
-/* Looks at the answer without frames, too: only then is a silence noticed. */
+/* Checks the answer also while no frame arrives, so that a silence is noticed. */
 static int read_interface(struct printer* printer, const char* interface) {
   struct canfd_frame frame;
   const int bus = open_interface(interface);

@@ -37,7 +37,7 @@ LINE = re.compile(
 
 
 def frames_of_log(path: str) -> Iterator[Frame]:
-    """The frames of a candump log. Raises LogError where it is none."""
+    """The frames of a candump log. Raises LogError if the file is not a candump log."""
     try:
         with open(path, encoding="utf-8", errors="replace", newline="\n") as log:
             for number, line in enumerate(log, start=1):

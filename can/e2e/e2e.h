@@ -58,13 +58,13 @@ struct E2eCounters {
   uint64_t wrong_crc = 0;
   uint64_t wrong_length = 0;
   uint64_t lost = 0;  ///< frames missing between usable ones, counted modulo the counter's range
-  uint64_t wrong_sequence = 0;  ///< E2eReceiver only: a counter that does not continue the sequence
-  /// E2eReceiver only: good frames that came while the state was not VALID.
+  uint64_t wrong_sequence = 0;  ///< E2eMonitor only: a counter that does not continue the sequence
+  /// E2eMonitor only: good frames that came while the state was not VALID.
   uint64_t not_valid = 0;
 };
 
 /// Checks each frame of one message by itself, in the order of arrival. The caller has to detect
-/// time-outs. E2eReceiver adds what a receiver in a vehicle needs. One thread.
+/// time-outs. E2eMonitor adds what a receiver in a vehicle needs. One thread.
 class E2eChecker {
  public:
   E2eChecker(const E2eProtection& protection, uint8_t length)

@@ -76,11 +76,11 @@ class BusListener {
 
 std::string_view name_of(E2eResult result);
 
-/// "0.520000 LOC_PosLocal ok LocalEast=1.23m LocalNorth=-4.50m". A value that is not available has
-/// the name SNA, or "(not_available)" follows it.
+/// Returns a line such as "0.520000 LOC_PosLocal ok LocalEast=1.23m LocalNorth=-4.50m". A value
+/// that is not available has the name SNA, or "(not_available)" follows it.
 std::string text_of(const DecodedFrame& frame, double time_s);
-/// One line of JSON with time_s, id, message, e2e and signals. The value of a signal that is not
-/// available is null. The value of a signal without scale and offset is a whole number.
+/// Returns one line of JSON with time_s, id, message, e2e and signals. The value of a signal that
+/// is not available is null. The value of a signal without scale and offset is a whole number.
 std::string json_of(const DecodedFrame& frame, double time_s);
 
 }  // namespace bevloc::can

@@ -16,8 +16,8 @@ constexpr double kWheelDifference_m = 0.3;
 
 // Along the vehicle, tyres hold about 1.2 g when braking, and no series car gains speed with more
 // than 1 g. The step allows for noise and a late time stamp. Each sample is compared with those of
-// the last 100 ms, because spinning wheels gain their speed within several samples. Of samples that
-// come faster than every 12.5 ms, some are left out, so that the others cover this time.
+// the last 100 ms, because spinning wheels gain their speed within several samples. If samples come
+// faster than every 12.5 ms, only some of them are kept, so that those cover the 100 ms.
 constexpr double kBraking_mps2 = 12.0;
 constexpr double kGaining_mps2 = 10.0;
 constexpr double kSpeedStep_mps = 0.3;
@@ -34,14 +34,15 @@ constexpr double kYawRateAtStandstill_radps = 0.2;
 
 // After a jump, only values near the one before the jump are used, because spinning or locked
 // wheels end with a second jump back. A level that has lasted for kSettledAfter is used again,
-// because spin and lock control end a slip sooner.
+// because traction control and anti-lock brakes end a slip sooner.
 constexpr double kDisputedAcceleration_mps2 = 0.5;
 constexpr Duration kSettledAfter = std::chrono::milliseconds(2500);
 
 // Limits of the mean interval, as multiples of the interval at which samples should come.
 constexpr double kSlowFactor = 2.25;
 constexpr double kTimelyFactor = 1.5;
-/// No interval counts as a larger multiple, so that one gap of any length does not count as slow.
+/// A longer interval counts as this multiple, so that a single gap, however long, does not count as
+/// slow odometry.
 constexpr double kLongestFactor = 10.0;
 /// The mean follows the interval within about ten samples.
 constexpr double kIntervalGain = 0.1;

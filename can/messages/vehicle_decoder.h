@@ -1,4 +1,4 @@
-// The interface of what decodes odometry and GNSS from the vehicle's CAN frames.
+// The interface of decoders, which take odometry and GNSS from the vehicle's CAN frames.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct VehicleInputCounters {
   uint64_t wrong_length = 0;
   uint64_t repeated = 0;
   uint64_t wrong_sequence = 0;        ///< the counter does not continue the sequence
-  uint64_t not_valid = 0;             ///< good frames of a message that is not VALID (E2eReceiver)
+  uint64_t not_valid = 0;             ///< good frames of a message that is not VALID (E2eMonitor)
   uint64_t lost = 0;                  ///< missing frames, detected by the counter
   uint64_t incomplete = 0;            ///< epochs with a missing message
   uint64_t not_available = 0;         ///< complete epochs with a signal that is SNA or out of range

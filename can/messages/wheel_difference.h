@@ -27,9 +27,10 @@ class WheelDifference {
   /// Adds a sample. Returns whether the mean deviates from what was learned by more than the limit.
   bool contradicts(const Sample& sample);
 
-  /// The mean of about the last second beyond what was learned, in its standard deviations. It
-  /// shows a smaller change than contradicts(), but not reliably enough to refuse samples. It is
-  /// empty while the standard deviation exceeds 0.5 degrees/s times the track.
+  /// By how much the mean of about the last second deviates from what was learned, in units of its
+  /// standard deviation. It shows smaller changes than contradicts() does, but not reliably enough
+  /// to refuse samples. It is empty while the standard deviation exceeds 0.5 degrees/s times the
+  /// track.
   std::optional<double> lean() const { return lean_; }
 
  private:

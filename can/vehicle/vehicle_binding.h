@@ -44,8 +44,8 @@ struct BoundSignal {
 /// The step of a signal in the unit of its quantity. It is 0 for floats.
 double step_of(const BoundSignal& signal);
 
-// A signal has a sign only if layout and range let it reach this value. A lowest value just below 0
-// is the rounding of a magnitude.
+// A signal has a sign only if layout and range let it reach this value. A range of a magnitude may
+// begin just below 0, because the limit was rounded.
 constexpr double kSignedSpeed_mps = -1.0;
 constexpr double kSignedYawRate_radps = -0.3;
 

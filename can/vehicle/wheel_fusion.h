@@ -20,7 +20,7 @@ struct RearSpeeds {
 /// Collects the wheels of one moment. Each wheel gives the speed of the middle of the rear axle. A
 /// rear wheel differs from it by yaw rate times half the track. A front wheel also moves across the
 /// vehicle, by yaw rate times wheelbase. If there are three wheels or more, those that differ from
-/// the median by more than `kSlip_mps` plus `kSlipShare` of it slip or block, and are left out. One
+/// the median by more than `kSlip_mps` plus `kSlipShare` of it slip or lock, and are left out. One
 /// thread.
 class WheelFusion {
  public:

@@ -5,7 +5,7 @@
 namespace bevloc::command {
 namespace {
 
-/// Reads a type such as "TEXT:{mock,v4l2}" or "TEXT:FILE", which says behind the colon what is
+/// Reads a type such as "TEXT:{mock,v4l2}" or "TEXT:FILE". The part after the colon says what is
 /// allowed.
 void read_type(const std::string& type, OptionEntry& entry) {
   const size_t colon = type.find(':');

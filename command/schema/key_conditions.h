@@ -1,4 +1,4 @@
-// Says of each key under which words it is required, optional or not allowed.
+// Finds out for each key under which words it is required, optional or not allowed.
 #pragma once
 
 #include <map>

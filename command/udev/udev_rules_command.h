@@ -14,10 +14,10 @@
 
 namespace bevloc::command {
 
-/// Returns the rules for the chips of these lines. `sysfs` is /sys, where the kernel tells the
-/// device to which a chip belongs. The device tree tells the chips of one device apart. Where there
-/// is none, a comment names the other chips. Fails if a line does not exist, or its chip has no
-/// device there.
+/// Returns the rules for the chips of these lines. `sysfs` is /sys, where the kernel shows to which
+/// device a chip belongs. If a device has several chips, the rule tells them apart by their nodes
+/// in the device tree. On a machine without a device tree, a comment names the other chips that the
+/// rule opens. Fails if a line does not exist, or if /sys shows no device of its chip.
 Result<std::string> udev_rules(const std::vector<drivers::GpioChipInfo>& chips,
                                const std::vector<drivers::LineAddress>& lines,
                                const std::filesystem::path& sysfs);

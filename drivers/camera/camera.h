@@ -25,8 +25,8 @@ struct CameraDescription {
   int width_px = 0;
   int height_px = 0;
   int buffers = 0;  ///< number of frames that the user may hold at the same time
-  /// Whether a readout time was configured that is not used, because the device's driver says that
-  /// it stamps the start of exposure. V4L2 cameras know it after start().
+  /// Whether the configured readout time is not used, because the device's driver says that it
+  /// stamps the start of exposure. A V4L2 camera sets this value in start().
   bool ignores_readout = false;
 };
 
@@ -73,8 +73,7 @@ class Camera {
   virtual void stop() = 0;
 
   /// Waits up to `timeout` for the next frame. With a timeout of zero it does not wait. A mock
-  /// camera may take longer, by the time that it needs to draw the image. On kFrame, `frame` is
-  /// replaced.
+  /// camera may wait longer: until it has drawn the image. On kFrame, `frame` is replaced.
   virtual Result<FrameEvent> next_frame(Duration timeout, Frame& frame) = 0;
 
   virtual CameraDescription description() const = 0;

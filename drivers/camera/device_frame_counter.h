@@ -19,11 +19,11 @@ class DeviceFrameCounter {
     was_starved_ = false;
   }
 
-  /// Takes the device's sequence number of a frame that arrived, which may wrap around. Frames
-  /// missing before it count as no_buffer if the user held all buffers at some time since the
-  /// previous frame, and else as lost. A number that is lower than the previous one shows that the
-  /// device began again, for example after the machine was suspended. Nobody knows how many frames
-  /// were lost then, so none is counted. Returns the sequence number of the frame since restart().
+  /// Takes the device's sequence number of a frame that arrived. The number may wrap around. A gap
+  /// in the numbers shows missing frames. They count as no_buffer if the user held all buffers
+  /// after the previous frame, and otherwise as lost. A number that is lower than the previous one
+  /// shows that the device began again, for example after a suspend. The number of lost frames is
+  /// then unknown, and none is counted. Returns the sequence number of the frame since restart().
   uint64_t arrived(uint32_t device_sequence) {
     constexpr uint32_t kLargestStep = UINT32_MAX / 2;
     uint32_t step = latest_ ? device_sequence - *latest_ : 0;

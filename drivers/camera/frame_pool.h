@@ -12,8 +12,8 @@
 namespace bevloc::drivers {
 
 /// create() allocates all memory. borrow() and the return of a buffer neither allocate nor lock.
-/// The free buffer with the lowest number is lent first, so the memory of buffers that are never
-/// needed never becomes resident. Thread-safe.
+/// borrow() lends the free buffer with the lowest number. So a buffer that is never lent takes up
+/// no physical memory. Thread-safe.
 class FramePool final : public FrameLender, public std::enable_shared_from_this<FramePool> {
  public:
   static constexpr int kMaxBuffers = 64;

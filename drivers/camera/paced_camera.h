@@ -22,9 +22,9 @@ struct Delivery {
 
 /// Draws each frame as soon as the previous one was fetched, and delivers it when it is due, as a
 /// sensor would. So the drawing time adds no latency. With a virtual clock the same code runs in
-/// lockstep. A frame that is late by `max_lateness` or more when it is fetched, or when its drawing
-/// is finished, is lost and counted as overrun. So on a machine that is too slow, frames are
-/// missing, but none is stale.
+/// lockstep. If a frame is late by `max_lateness` or more when it is fetched or when its drawing
+/// ends, it is dropped and counted as overrun. So a machine that is too slow loses frames, but
+/// delivers no stale ones.
 class PacedCamera : public Camera {
  public:
   Status start() final;

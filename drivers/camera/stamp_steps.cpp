@@ -5,7 +5,8 @@
 namespace bevloc::drivers {
 namespace {
 
-/// Stamp and arrival may differ by up to this, because a busy thread takes a frame late.
+/// Two of stamp, arrival and sequence number agree if their times since the frame before differ by
+/// at most this, because a busy thread may take a frame late.
 constexpr Duration kAgreement = std::chrono::milliseconds(20);
 /// Only two frames that are at most this many periods apart are compared. Over more periods, small
 /// errors of the period would add up.
@@ -15,7 +16,7 @@ constexpr int kForgetting = 16;
 /// The usual lag may grow by this much with each frame, because a camera can stay slower than
 /// before.
 constexpr Duration kLagGrowth = std::chrono::milliseconds(1);
-/// A jump that so many frames did not disprove counts for good.
+/// A jump counts for good when this many frames have not disproved it.
 constexpr int kDoubtedFrames = 50;
 
 }  // namespace
@@ -50,8 +51,8 @@ void StampSteps::judge(const Seen& frame) {
   if (std::chrono::abs(jump) > (timely ? kAgreement : kTolerated)) add_jump(jump);
 }
 
-/// A jump during a doubt is compared with the lag before that doubt, because only this lag is known
-/// to belong to an offset.
+/// Adds a jump to the offset. While an earlier jump is in doubt, the usual lag from before that
+/// jump stays the reference, because later lags belong to an offset that is not certain.
 void StampSteps::add_jump(Duration jump) {
   if (!doubt_ && std::chrono::abs(jump) <= kTolerated) {
     offset_ += jump;

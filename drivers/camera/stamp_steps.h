@@ -9,9 +9,9 @@
 namespace bevloc::drivers {
 
 /// The stamp, the arrival and the sequence number of a frame each say how much time has passed
-/// since the frame before. If stamp and arrival disagree, the sequence number decides. A stamp
-/// that says another time is wrong: the stamps have jumped. If the frame also arrived late, only a
-/// jump of more than kTolerated counts. The sum of all jumps is the offset of the stamps.
+/// since the frame before. If stamp and arrival disagree, the sequence number decides. If the stamp
+/// disagrees with the sequence number, the stamps have jumped. If the frame also arrived late, only
+/// a jump of more than kTolerated counts. The sum of all jumps is the offset of the stamps.
 ///
 /// If the trigger omits a pulse, more time passes than the sequence numbers show, and the stamps
 /// seem to jump. So a large jump is taken back if the lags of the next frames do not fit it. The

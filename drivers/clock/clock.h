@@ -14,7 +14,7 @@ class Clock {
   /// Returns at `time` or later, and immediately if `time` has passed.
   virtual void sleep_until(Time time) = 0;
 
-  /// For how long the machine was suspended since its start. now() stood still meanwhile.
+  /// How long the machine was suspended since its start. now() stands still during a suspend.
   virtual Duration suspended() const = 0;
 
   /// The time since an arbitrary zero, at the rate of the hardware. The rate of now(), in contrast,

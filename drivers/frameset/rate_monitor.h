@@ -20,9 +20,9 @@ struct CameraDrift {
 };
 
 /// Fits a straight line through the times of the latest frames of each camera. Its slope is the
-/// period. Missing frames do no harm, because each interval counts as the nearest whole number of
-/// periods. Uses no clock. Allocates in its constructor only. The computation takes about five
-/// microseconds per 32 frames of a camera. One thread.
+/// period. Missing frames do no harm, because the interval between two frames counts as the nearest
+/// whole number of periods. Uses no clock. Allocates in its constructor only. The computation takes
+/// about five microseconds per 32 frames of a camera. One thread.
 class RateMonitor {
  public:
   /// The limit of the drift. Quartz crystals of the same kind differ by less. 25 ppm are 1.5 ms per

@@ -8,10 +8,11 @@ namespace {
 constexpr Duration kBucket = std::chrono::seconds(5);
 /// If UTC goes back by more than this, the receiver's time has started anew.
 constexpr Duration kRestart = std::chrono::seconds(1);
-/// If UTC is set back by a leap second, the next report seems to be later by a second. The delays
-/// of reports vary too, but by less than 300 ms.
+/// A delay that grows by at least this much shows that UTC may have been set back by a leap second:
+/// the next report then seems to be delayed by one second more. Delays also vary without that, but
+/// by less than 300 ms.
 constexpr Duration kSetBack = std::chrono::milliseconds(700);
-/// UTC counts as set back only if all reports of this time say so. A few old reports do not
+/// UTC counts as set back only if all reports of such an interval say so. A few old reports do not
 /// suffice.
 constexpr Duration kSetBackTime = std::chrono::seconds(1);
 constexpr Duration kLeastSigma = std::chrono::milliseconds(1);

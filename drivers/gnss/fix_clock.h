@@ -25,7 +25,7 @@ enum class FixTiming : uint8_t {
 
 struct FixClockParameters {
   FixTiming timing = FixTiming::kArrival;
-  Duration latency{};  ///< used for kArrival only, like latency_sigma
+  Duration latency{};  ///< latency and latency_sigma are used for kArrival only
   Duration latency_sigma = std::chrono::milliseconds(50);
   Duration max_age = std::chrono::seconds(1);  ///< an older fix is stale
 };
@@ -85,8 +85,9 @@ class FixClock {
     Duration delay{};
   };
 
-  /// Returns whether the receiver has set back its UTC for good, by about a leap second. A network
-  /// or a gpsd that delays all reports never makes UTC go back, so its delay is not forgotten.
+  /// Returns whether the receiver has set back its UTC for good, by about a leap second. A slow
+  /// network or gpsd only delays the reports, and UTC does not go back. Then the learned delays
+  /// stay valid.
   bool is_set_back(const Report& report, Time arrival);
   FixTime by_arrival(Duration delay, const FixArrival& arrival);
   FixTime by_system_clock(std::chrono::nanoseconds utc, const FixArrival& arrival);
@@ -97,7 +98,7 @@ class FixClock {
 
   FixClockParameters parameters_;
   std::optional<Report> latest_;        ///< the newest one
-  std::optional<Time> set_back_since_;  ///< since this arrival UTC may be set back
+  std::optional<Time> set_back_since_;  ///< first arrival at which UTC seemed to be set back
   std::array<Bucket, 64> buckets_{};    ///< for five minutes
   int learned_ = 0;
   Duration max_usable_age_{};

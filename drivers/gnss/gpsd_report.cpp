@@ -33,7 +33,7 @@ bool read_sigma(const Json& report, GnssFix& fix) {
   const auto north = number(report, "epy");
   const auto both = number(report, "eph");
   if (!(east && north) && !both) return false;
-  // The horizontal error has two equal parts.
+  // eph is the horizontal error. Its north and east parts count as equal.
   const double part_m = both.value_or(0.0) / std::sqrt(2.0);
   fix.sigma_east_m = east && north ? *east : part_m;
   fix.sigma_north_m = east && north ? *north : part_m;

@@ -43,11 +43,12 @@ struct GpsdReport {
 
 /// Reads the lines of one gpsd in their order.
 ///
-/// The sigma of a fix is that of the receiver's own statement (GST), if the latest one comes from
-/// the same receiver and is at most 1.5 s older, and mode and status have not changed since.
-/// Otherwise epx and epy, or eph, of the position report (TPV) are taken as one sigma. This is
-/// cautious: gpsd does not state their certainty, but many receivers give 95 %. If the receiver
-/// states nothing, gpsd guesses from the dilution of precision. One thread.
+/// The sigma of a fix comes from the receiver's own accuracy report (GST), if three things hold:
+/// the latest GST is from the same receiver, it is at most 1.5 s older than the fix, and mode and
+/// status have not changed since. Otherwise epx and epy, or eph, of the position report (TPV) count
+/// as one sigma. This is cautious: gpsd does not state their confidence level, and many receivers
+/// give the bound of 95 %. If the receiver states no accuracy, gpsd estimates it from the dilution
+/// of precision. One thread.
 class GpsdReader {
  public:
   GpsdReport read(std::string_view line);

@@ -34,8 +34,8 @@ class Trigger {
   /// The first pulse is due one period from now. `clock` must outlive the trigger.
   Trigger(std::unique_ptr<OutputLine> line, Clock& clock, const TriggerConfig& config);
 
-  /// Waits up to `timeout` for the next due time and gives the pulse. Fails if the line refuses the
-  /// pulse. The next call goes on.
+  /// Waits up to `timeout` until the next pulse is due, and gives it. Fails if the line refuses the
+  /// pulse. The next call then continues with the following pulse.
   Status step(Duration timeout);
 
   const PulseLog& pulses() const { return pulses_; }

@@ -30,7 +30,7 @@ struct MatchedPlace {
 /// thus gives the same confident but wrong answer that was measured there. One thread.
 class MatchModel {
  public:
-  /// `table` must outlive the model and have a match in both ranges.
+  /// `table` must outlive the model. Each of its drives must have matches of both ranges.
   MatchModel(const MatchTable& table, const HypothesisGrid& tracking,
              const HypothesisGrid& acquiring, uint64_t seed);
 

@@ -47,7 +47,7 @@ struct MatchTable {
   std::vector<MeasuredPlace> places;
 };
 
-/// Reads a file that to_csv() wrote.
+/// Reads a file that to_csv() wrote. Each of its drives must have matches of both ranges.
 Result<MatchTable> read_match_table(const std::filesystem::path& file);
 
 /// One line per match. Lengths in mm, angles in millidegrees, shares in percent.

@@ -14,8 +14,8 @@ constexpr double kLatency_s = 0.03;
 constexpr double kTurning_mps = 1.0;
 /// Where two lanes look alike, the distribution has a second peak that is nearly as high.
 constexpr double kRivalOfLaneAlike = 0.9;
-/// A neighbouring lane counts from half of the distance to it. The search range sees it as a second
-/// peak if it reaches that far.
+/// In lane widths. A prior that is farther off finds the neighbouring lane. A search range that is
+/// wider shows that lane as a second peak.
 constexpr double kHalf = 0.5;
 
 /// The solver's answer to pictures that show nothing.

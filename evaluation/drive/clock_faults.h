@@ -17,7 +17,8 @@ class ClockFaults {
       : faults_(std::move(faults)) {}
 
   /// How far the clock must jump ahead now, because the appliance stands still. Call it repeatedly.
-  /// `elapsed_s`: the time since the drive's start.
+  /// A fault that began and ended between two calls counts in the second one. `elapsed_s`: the time
+  /// since the drive's start.
   Duration gap_due(double elapsed_s);
 
   /// For how long the machine was suspended since the previous call. Call it before the vehicle

@@ -50,8 +50,8 @@ struct DriveConfig : firmware::Config {
   std::optional<SimulationConfig> simulation;
 };
 
-/// Reads what only a program with the simulator reads, into `simulation`, which must outlive it.
-/// After read_simulation() there is a SimulationConfig.
+/// A reader of what only a program with the simulator reads. It fills `simulation`, which must
+/// outlive the reader. After read_simulation(), `simulation` has a value.
 firmware::SimulationReader simulation_reader(std::optional<SimulationConfig>& simulation);
 
 /// Like firmware::load_config(), but accepts mock cameras.

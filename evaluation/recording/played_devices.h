@@ -78,7 +78,7 @@ Result<std::vector<PlayedFrame>> played_frames(Recording& recording, std::string
 Result<drivers::Frame> read_recorded_frame(Recording& recording, int camera, size_t number,
                                            const Intrinsics& lens);
 
-/// The recorded image as RGB, for people. Bayer images become grey.
+/// The recorded image as RGB, for people.
 Result<RgbImage> picture_at(Recording& recording, int camera, const MessagePlace& place);
 
 }  // namespace bevloc::evaluation

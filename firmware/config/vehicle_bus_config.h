@@ -13,10 +13,10 @@ namespace bevloc::firmware {
 /// Reads the key `dbc`. Returns an empty text if it is missing, which yaml.finish() reports.
 std::string read_dbc_name(YamlMap& yaml);
 
-/// Reads the DBC file and finds all signals in it. yaml.finish() reports mistakes, with the key and
-/// the names that were probably meant; those of the DBC file with its own line. The result is not
-/// complete then. `base` has the identifiers that the DBC file must not use for other messages.
-/// `dbc_file` is empty if read_dbc_name() has found none.
+/// Reads the DBC file and finds all signals in it. yaml.finish() reports mistakes: those of the
+/// configuration with the key and the names that were probably meant, and those of the DBC file
+/// with its line. After a mistake, the result is not complete. `base` has the identifiers that the
+/// DBC file must not use for other messages. `dbc_file` is empty if read_dbc_name() found no name.
 can::VehicleBinding read_vehicle_bus(YamlMap& yaml, const can::BaseIds& base,
                                      const std::filesystem::path& dbc_file);
 

@@ -32,8 +32,8 @@ struct HealthLimits {
   /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
   /// limits of a freeway. A new pose becomes valid only if its error is well within them. A pose is
   /// lost if its lateral or heading protection level exceeds them and the latest confirming
-  /// correction is older than 3 s. The age is compared with 2 s in the first 5 s of a pose, and
-  /// with `correction_timeout` while match or GNSS is excluded.
+  /// correction is older than 3 s. The age is compared with 2 s in the first 5 s of a pose. While
+  /// match or GNSS is excluded, it is compared with `correction_timeout` if that is shorter.
   Eigen::Vector3d alert_limit = kFreewayAlertLimits;
   /// The parameters of the protection levels that are sent with the pose.
   ProtectionParameters protection;
@@ -46,7 +46,7 @@ struct HealthInputs {
   bool initialized = false;  ///< the tracker has a pose from GNSS and odometry
   Duration odometry_age = Duration::max();
   Duration gnss_age = Duration::max();
-  /// Age of the latest accepted correction that had evidence across the vehicle.
+  /// Age of the latest accepted correction that confirms the pose (Seen::confirms()).
   Duration correction_age = Duration::max();
   /// Age of the latest accepted correction.
   Duration match_age = Duration::max();

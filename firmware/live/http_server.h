@@ -30,11 +30,10 @@ struct HttpLimits {
 };
 
 /// Answers GET and HEAD. Each connection carries one request. cpp-httplib parses the request and
-/// writes the response. This class accepts connections, waits for them, limits them and closes
-/// them, so that a slow or hostile client costs a bounded number of threads for a bounded time. A
-/// request whose Host header is a name other than "localhost" gets 403. So a page of a foreign site
-/// cannot read the answers by letting its own name point here (DNS rebinding). A Range header is
-/// ignored.
+/// writes the response. This class accepts, limits and closes the connections. So a slow or hostile
+/// client occupies a bounded number of threads for a bounded time. A request whose Host header is a
+/// name other than "localhost" gets 403. So a page of a foreign site cannot read the answers by
+/// letting its own name point here (DNS rebinding). A Range header is ignored.
 ///
 /// Starts `workers` threads that answer and one thread that accepts, all with the lowest priority
 /// of the normal scheduler. One thread. The handlers run in the threads that answer.

@@ -23,15 +23,17 @@ struct TrailPoint {
 // These functions return the events, whose keys docs/live.md describes.
 
 std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age);
-/// Each point is [x, y, valid, begins], the latter two 0 or 1.
+/// Returns the event with the trail. Each point is [x, y, valid, begins], where valid and begins
+/// are 0 or 1.
 std::string trail_event(const std::deque<TrailPoint>& trail);
-/// The event with the map's lines around a place, in metres in the map frame.
+/// Returns the event with the map's lines around a place, in metres in the map frame.
 std::string map_event(const MapIndex& map, const Eigen::Vector2d& centre_m, double reach_m);
-/// The event with the mask, the map's lines at the prior and at the corrected pose, and the
+/// Returns the event with the mask, the map's lines at the prior and at the corrected pose, and the
 /// distributions. `sample` must have a mask.
 std::string match_event(const MapIndex& map, const LiveSample& sample);
-/// The event with one camera image, and with the places of the map's lines in it at the prior and
-/// at the corrected pose. `sample` must have an image. The result is empty if the image is damaged.
+/// Returns the event with one camera image, and with the places of the map's lines in it at the
+/// prior and at the corrected pose. `sample` must have an image. The result is empty if the image
+/// is damaged.
 std::string camera_event(const MapIndex& map, const Rig& rig, const LiveSample& sample,
                          PictureMaker& pictures);
 

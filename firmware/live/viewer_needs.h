@@ -12,14 +12,14 @@ namespace bevloc::firmware {
 
 /// A viewer needs trail and map once, when it comes and when it has missed events. All viewers need
 /// the map again after the vehicle has moved far. set() is thread-safe. The owner makes sure that
-/// calls of the others do not overlap.
+/// calls of the other functions do not overlap.
 class ViewerNeeds {
  public:
   /// The map is sent again when the vehicle is this far from the place around which it was sent.
   static constexpr double kMapRenewal_m = 60.0;
 
-  /// Notes that a viewer lacks both. Its place in the event queue must be known before, so that it
-  /// gets what is sent from now on.
+  /// Notes that a viewer lacks trail and map. The viewer must have its place in the event queue
+  /// before this call, so that it gets what is sent after it.
   void set() {
     trail_ = true;
     map_ = true;

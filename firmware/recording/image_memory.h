@@ -16,16 +16,16 @@ class ImageMemory {
   static constexpr int kMostImages = 6;
   /// One image is written while the camera delivers the next one.
   static constexpr int kLeastImages = 2;
-  /// For all cameras together, unless kLeastImages need more. With this and the images that the
-  /// writer works on, the daemon stays below the limit of its unit, 512 MiB
-  /// (systemd/bevlocd.service), with a map of 3,000 km.
+  /// The memory of all cameras together, unless kLeastImages of each need more. With this memory,
+  /// the images that the writer works on and a map of 3,000 km, the daemon stays below the 512 MiB
+  /// that its unit allows (systemd/bevlocd.service).
   static constexpr size_t kMost_bytes = size_t{128} << 20U;
 
   ImageMemory(int width_px, int height_px)
       : pool_(drivers::FramePool::create(images_for(width_px, height_px), width_px, height_px)),
         bytes_(bytes_of(width_px, height_px)) {}
 
-  /// The number of images of this size that there is memory for.
+  /// The number of images of this size for which there is memory.
   static int images_for(int width_px, int height_px);
 
   /// Whether the image needs no more than three bytes for each pixel of the size that was given to

@@ -96,7 +96,8 @@ class Recorder {
   void write_event(const RecordedTruth& truth);
   void write_match(const RecordedMatch& match);
   void count_event();
-  /// Counts what was written since the latest call: it is on the disk, or lost if writing failed.
+  /// Counts what was written since the latest call as written to the disk, or as lost if writing
+  /// failed.
   void settle();
   void write_counters(Time now);
   void watch_state(HealthState state, Time now);

@@ -18,10 +18,10 @@ Status check_folder(const std::filesystem::path& directory);
 
 /// Writes one file after the other into the folder, and deletes the oldest ones beyond the limits.
 /// If the clock seems to be wrong, because all files of earlier runs would be too old by more than
-/// a year, deletes none for its age. keep() gives the files of the last minute a second name (a
-/// hard link) in the folder `kept`, which the ring does not delete. The file that is being written
-/// can be kept too: it grows under both names. If the disk is full, deletes the oldest files of the
-/// ring, and then those in `kept`. One thread.
+/// a year, deletes no file because of its age. keep() gives the files of the last minute a second
+/// name (a hard link) in the folder `kept`, which the ring does not delete. The file that is being
+/// written can be kept too: it grows under both names. If the disk is full, deletes the oldest
+/// files of the ring, and then those in `kept`. One thread.
 class RecordingRing {
  public:
   /// The time before an event that the black box covers.
@@ -38,7 +38,7 @@ class RecordingRing {
 
   Status write(std::string_view topic, const google::protobuf::Message& message,
                uint64_t log_time_ns, uint64_t publish_time_ns);
-  /// Begins the next file when it is time. Otherwise puts what is written on the disk.
+  /// Begins the next file when it is due. Otherwise writes what is buffered to the disk.
   Status step(uint64_t log_time_ns);
   Status finish() { return file_->finish(); }
 

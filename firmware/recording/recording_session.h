@@ -11,13 +11,14 @@
 namespace bevloc::firmware {
 
 /// Opens the recorder that the configuration asks for, or returns null if it asks for none. The
-/// head of each file has the configuration, the calibration, what was learned about it, the map if
-/// it is not too large, and the checksums of model and map.
+/// head of each file has the configuration, the calibration with the learned errors, the map if it
+/// is not too large, and the checksums of model and map. Configuration, rig and DBC file are those
+/// that load_config() read, although the files may have changed since.
 Result<std::unique_ptr<Recorder>> open_recorder(const Config& config, const Rig& rig,
                                                 const HdMap& map, bool lockstep, Time now);
 
-/// Replaces cameras and bus by those that tell the recorder what passes (taps.h). `recorder` must
-/// outlive the hardware.
+/// Wraps cameras and bus so that they hand each frame to the recorder as well (taps.h). `recorder`
+/// must outlive the hardware.
 void tap(Hardware& hardware, Recorder& recorder);
 
 /// Makes the appliance record matches, solutions and counters. Call it before the first step of the

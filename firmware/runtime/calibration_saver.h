@@ -16,9 +16,9 @@
 namespace bevloc::firmware {
 
 /// The vision thread hands over what was learned, at most once in kPeriod, and never waits. Another
-/// thread writes it if it differs from what was written last. While a camera is out of place, the
-/// file keeps what was known at the start: that camera changed the estimates of the other cameras
-/// before it was found.
+/// thread writes it to the file if it differs from the latest content. While a camera is out of
+/// place, the file keeps what was known at the start, because that camera has disturbed the
+/// estimates of the other cameras before the fault was found.
 ///
 /// Thread-bound: note() is called from the vision thread, write_next() from the saving thread.
 /// finish() is called after the vision thread has ended and write_next() is no longer called.
@@ -30,8 +30,8 @@ class CalibrationSaver {
   /// driving, does not wear a flash memory out.
   static constexpr Duration kPeriod = std::chrono::minutes(1);
 
-  /// What `online` knows now counts as written. `online` must outlive the saver. `rig_crc32` is
-  /// that of the rig to which the errors belong.
+  /// What `online` knows now counts as written. `online` must outlive the saver. `rig_crc32` is the
+  /// checksum of the rig to which the errors belong.
   CalibrationSaver(const OnlineCalibration& online, uint32_t rig_crc32, std::filesystem::path file);
 
   /// Makes the stage call note() after each match. Call it before the first step of the stage.
@@ -75,7 +75,7 @@ std::unique_ptr<CalibrationSaver> make_calibration_saver(const Config& config, c
 
 /// Starts the saving thread. It writes what is handed over, with the lowest priority of the normal
 /// scheduler, and finishes when it is asked to stop. Ask it only after the vision thread has ended.
-/// Nothing waits for this thread before. `saver` must outlive it.
+/// No other thread waits for this one before. `saver` must outlive it.
 std::jthread start_saving(CalibrationSaver& saver);
 
 }  // namespace bevloc::firmware

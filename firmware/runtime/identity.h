@@ -10,8 +10,9 @@
 
 namespace bevloc::firmware {
 
-/// Computes the checksums. A file that cannot be read, or that the configuration does not name, has
-/// the checksum 0.
+/// Computes the checksums. Those of configuration and rig are of the files as load_config() read
+/// them; the model is read now. A file that cannot be read, or that the configuration does not
+/// name, has the checksum 0.
 can::Identity identity_of(const Config& config, const HdMap& map);
 
 /// Returns LOC_Status.MapId: map_checksum(), folded to 16 bits.

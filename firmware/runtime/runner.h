@@ -27,7 +27,9 @@ using Supervise = std::function<bool(Time now)>;
 /// the GNSS stage, and two for the companion. The calling thread supervises. `realtime` applies to
 /// the appliance's threads only. `companion` is null if there is none. Returns after `supervise`
 /// has returned false, all threads have ended and the sign-off is sent. If a thread hangs and does
-/// not end within 4 s, the process exits with kHungExitCode after the sign-off.
+/// not end within 4 s, the process exits with kHungExitCode after the sign-off. If a thread cannot
+/// be started, or `supervise` throws, the exception is passed on after all threads have ended,
+/// without the sign-off.
 void run_threads(Appliance& appliance, Realtime& realtime, const Companion* companion,
                  const Supervise& supervise);
 

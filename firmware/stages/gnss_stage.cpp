@@ -6,15 +6,16 @@
 namespace bevloc::firmware {
 namespace {
 
-/// The speed that is assumed if the receiver does not tell it.
+/// The assumed speed if the receiver does not report one.
 constexpr double kUnknownSpeed_mps = 40.0;
 constexpr double kCourseIsHeading_mps = 5.0;
 constexpr double kCourseSigma_deg = 3.0;
-/// A common lateral acceleration. It turns the course of an antenna in front of the rear axle.
+/// A common lateral acceleration in bends. There the course of an antenna in front of the rear axle
+/// differs from the heading.
 constexpr double kAcross_mps2 = 2.0;
 
-/// Returns the heading that follows from a course. The course is that of the antenna and not that
-/// of the rear axle.
+/// Returns the heading that follows from the course of the antenna. Its sigma allows for the
+/// difference from the course of the rear axle.
 std::optional<can::GeodeticFix::Heading> heading_of(const drivers::GnssFix& fix,
                                                     const GnssSample::Antenna& antenna) {
   if (!fix.course_deg || !fix.speed_mps || *fix.speed_mps < kCourseIsHeading_mps) {

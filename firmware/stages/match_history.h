@@ -15,7 +15,7 @@ class MatchHistory {
   /// Matches with a longer pause between them are not in a row.
   static constexpr Duration kLongestPause = std::chrono::seconds(2);
 
-  /// Adds what became of the match of a frameset.
+  /// Adds the outcome of the match of a frameset.
   void add(Time frame_time, const PoseEstimator::MatchOutcome& outcome) {
     const Seen& seen = outcome.seen;
     if (accepted_time_ && frame_time - *accepted_time_ > kLongestPause) accepted_in_a_row_ = 0;
@@ -34,14 +34,15 @@ class MatchHistory {
   /// Forgets everything, because the matches say nothing about the next pose.
   void forget() { *this = {}; }
 
-  /// Counts anew, because the pose is lost.
+  /// Sets the counts to zero, because the pose is lost.
   void restart_counts() { accepted_in_a_row_ = refused_in_a_row_ = 0; }
 
   /// Frameset of the latest accepted match.
   const std::optional<Time>& accepted_time() const { return accepted_time_; }
   /// Frameset of the latest accepted match that confirms the pose (Seen::confirms()).
   const std::optional<Time>& confirmed_time() const { return confirmed_time_; }
-  int accepted_in_a_row() const { return accepted_in_a_row_; }  ///< that confirm a start
+  /// Number of accepted matches in a row that confirm a start (Seen::confirms_start()).
+  int accepted_in_a_row() const { return accepted_in_a_row_; }
   int refused_in_a_row() const { return refused_in_a_row_; }
   /// Whether the pose may lie outside the tracking range of the latest match.
   bool wide_search() const { return wide_search_; }

@@ -18,7 +18,7 @@ struct Prior {
   CameraMotions reference_from_exposure{};
   double speed_mps = 0.0;  ///< negative when reversing
   SearchRange range = SearchRange::kAcquiring;
-  /// The motion since the frameset that was asked for before, where it is known.
+  /// The motion since the frameset of the previous call of at(), if it is known.
   std::optional<DrivenStep> driven{};
 };
 
@@ -46,7 +46,7 @@ class PriorSource {
   PredictionQueue& predictions_;
   PoseTrail trail_;
   bool acquiring_ = true;
-  std::optional<Time> previous_time_;  ///< time of the frameset that was asked for before
+  std::optional<Time> previous_time_;  ///< time of the frameset of the previous at()
 };
 
 }  // namespace bevloc::firmware

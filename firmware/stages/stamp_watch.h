@@ -7,8 +7,8 @@
 
 namespace bevloc::firmware {
 
-/// Joins two witnesses: vision sees that the stamps jumped, and StampMonitor compares the headings
-/// of matches with the yaw rate. Allocates in the constructor only. One thread.
+/// Combines two sources: vision reports that the stamps jumped, and StampMonitor compares the
+/// headings of matches with the yaw rate. Allocates in the constructor only. One thread.
 class StampWatch {
  public:
   /// Adds the vehicle's yaw rate.
@@ -30,7 +30,7 @@ class StampWatch {
   void note_jump(bool jumped);
   void compare_heading(const VisionReport& report);
 
-  /// A yaw-rate sensor delays by some 10 ms itself.
+  /// Tolerates 30 ms, because the yaw rate of a sensor is itself late by some 10 ms.
   StampMonitor monitor_{std::chrono::milliseconds(30)};
   bool latest_jumped_ = false;  ///< what the latest report says
   bool jumped_ = false;         ///< the stamps jumped, and no bend has confirmed them since

@@ -75,7 +75,8 @@ bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
     return true;
   }
   const bool is_unsynchronized = framesets_.unsynchronized_without_framesets(now);
-  // A fault that the check at the start has found must be known before the first frameset comes.
+  // If the check at the start has found a fault, the fault is reported before the first frameset
+  // comes.
   const bool is_faulty_start = counters_.network_fault && counters_.framesets == 0;
   if (is_unsynchronized || is_faulty_start) {
     VisionReport report;

@@ -16,7 +16,8 @@ struct ProcessUse {
 /// Asks the kernel. A value that it does not tell is zero.
 ProcessUse use_of_this_process();
 
-/// Returns the text of /metrics. `age` is that of check_health(). docs/live.md lists the metrics.
+/// Returns the text of /metrics. `age` means the same as in check_health(). docs/live.md lists the
+/// metrics.
 std::string metrics_text(const Telemetry& telemetry, const ProcessUse& process, Duration age);
 
 }  // namespace bevloc::firmware

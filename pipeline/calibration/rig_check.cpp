@@ -59,8 +59,8 @@ bool grows_with_angle(const Intrinsics& fisheye) {
   return true;
 }
 
-/// Whether every pixel has its own ray: each must project back to its pixel, and to the right and
-/// below of it must lie rays to the right and below.
+/// Whether every pixel has its own ray. Each ray must project back to its pixel, and the pixels to
+/// the right and below must have rays to the right and below.
 bool is_one_to_one(const Intrinsics& camera) {
   if (camera.lens == Lens::kFisheye) return grows_with_angle(camera);
   constexpr int kSteps = 16;

@@ -63,8 +63,8 @@ class StampMonitor {
   static constexpr size_t kRates = 128;
   static constexpr Duration kGap = std::chrono::milliseconds(100);
   static constexpr Duration kLag = std::chrono::seconds(2);
-  /// Headings that follow the latest one sooner are not used. The others of one lag fit into
-  /// `headings_`.
+  /// A heading that follows the latest one sooner than this is not used. So the headings of one lag
+  /// fit into `headings_`.
   static constexpr Duration kSpacing = std::chrono::milliseconds(32);
   static constexpr size_t kHeadings = kLag / kSpacing + 2;
 

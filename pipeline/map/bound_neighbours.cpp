@@ -9,7 +9,7 @@ namespace {
 constexpr double kBesideEdge_m = 2.5;
 /// A line is the edge of the road if other lines run beside at most this share of it.
 constexpr double kEdgeShare = 0.5;
-/// Bounds of neighbouring lanelets that share no way are this close, along this share.
+/// Two ways are the same line if they are at most this far apart along at least this share.
 constexpr double kSameLine_m = 0.5;
 constexpr double kSameLineShare = 0.8;
 

@@ -11,7 +11,7 @@
 
 namespace bevloc {
 
-/// Add all lanelets and lines before the first question. One thread.
+/// Add all lanelets and lines before the first call of a query. One thread.
 class BoundNeighbours {
  public:
   /// Adds the ways of both bounds of one lanelet. They do not count as neighbours of each other.
@@ -29,8 +29,8 @@ class BoundNeighbours {
   /// Whether a bound without a type runs on one of a neighbouring lanelet.
   bool is_on_bound(int64_t way, const Polyline& points) const;
 
-  /// Whether this way runs on a way that an earlier call had. Call it only for ways for which
-  /// is_on_bound() is true.
+  /// Whether this way is the same line as the way of an earlier call. Call it only for ways for
+  /// which is_on_bound() is true.
   bool is_second_of_a_pair(int64_t way, const Polyline& points);
 
  private:

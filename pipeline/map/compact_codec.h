@@ -180,7 +180,7 @@ class CompactDecoder {
   std::optional<std::string> error_;
 };
 
-/// The lanes of both versions of the format (map_binary.cpp).
+/// Write and read the lanes, which are alike in both versions of the format (map_binary.cpp).
 void encode_lanes(const std::vector<Lane>& lanes, CompactEncoder& body);
 std::vector<Lane> decode_lanes(CompactDecoder& decoder);
 

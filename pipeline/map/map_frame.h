@@ -16,8 +16,8 @@ namespace bevloc {
 
 struct NodePositions {
   GeoOrigin origin;
-  /// Metres east and north of the origin. Nodes without coordinates are missing, and those that no
-  /// way uses.
+  /// Metres east and north of the origin. Contains neither nodes without coordinates nor nodes that
+  /// no way uses.
   std::unordered_map<int64_t, Eigen::Vector2d> of_node;
 };
 

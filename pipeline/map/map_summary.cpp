@@ -7,7 +7,7 @@
 namespace bevloc {
 namespace {
 
-/// If there were more sentences about parts that were left out, they would hide everything else.
+/// More sentences about parts that were left out would hide everything else.
 constexpr size_t kMostShown = 5;
 
 long count_of(const HdMap& map, ElementClass element_class) {

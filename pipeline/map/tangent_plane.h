@@ -9,9 +9,9 @@
 namespace bevloc {
 
 /// The place on the ellipsoid whose height 0 projects on `point` (metres east and north): the
-/// inverse of LocalCartesian::Forward with height 0. The plane leaves the ellipsoid with the
-/// distance from its origin (2 m at 5 km, 240 m at 55 km), so that LocalCartesian::Reverse of
-/// height 0 above the plane is up to 2 m off at 55 km.
+/// inverse of LocalCartesian::Forward with height 0. The height of the plane above the ellipsoid
+/// grows with the distance from its origin (2 m at 5 km, 240 m at 55 km). LocalCartesian::Reverse
+/// of height 0 above the plane is therefore up to 2 m off at 55 km.
 GeoOrigin place_of(const GeographicLib::LocalCartesian& plane, const Eigen::Vector2d& point);
 
 /// The point of the plane (metres east and north) over a place at height 0. Beyond the horizon, the

@@ -19,7 +19,7 @@ struct LearnedCalibration {
   bool operator==(const LearnedCalibration&) const = default;
 };
 
-/// Identifies a rig: another calibration has other errors.
+/// A number that identifies a rig. What was learned about one rig is wrong for another.
 uint32_t rig_crc32(const Rig& rig);
 
 /// The text of a file: a YAML mapping, which ends with a CRC-32 of all text before it.

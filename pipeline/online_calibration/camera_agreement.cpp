@@ -88,8 +88,8 @@ bool CameraAgreement::shares_of(CameraMask judged, std::array<double, kCameraCou
   }
   if (judged.count() < kLeastCameras) return false;
   std::ranges::sort(sorted);
-  // Of the two in the middle, this takes the better one, because two swapped cameras leave more
-  // good ones.
+  // If two cameras are in the middle, this is the better one. With four cameras of which two are
+  // swapped, it is then one at its own place.
   const double median = sorted[judged.count() / 2];
   if (median < kLeastMedian) return false;
   for (double& share : shares) share /= median;

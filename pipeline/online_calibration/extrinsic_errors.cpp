@@ -26,7 +26,8 @@ GroundShift ground_shift(const Se3& vehicle_from_camera, double x_m, double y_m)
   const Eigen::Vector3d ray = Eigen::Vector3d(x_m, y_m, 0.0) - camera_m;
   GroundShift shift;
   for (int axis = 0; axis < 3; ++axis) {
-    // A ray that is lifted by z meets the ground later: it grows by z / height.
+    // If the end of a ray is lifted by z, the ray meets the ground farther away: it grows by the
+    // share z / height.
     const Eigen::Vector3d turned = vehicle_from_camera.rotation.col(axis).cross(ray);
     shift.col(axis) = turned.head<2>() + ray.head<2>() * (turned.z() / camera_m.z());
   }

@@ -42,7 +42,8 @@ void MotionDirection::begin() {
 }
 
 /// Lays the driven path over the matched positions, by weighted least squares. Matches are several
-/// times less exact along the road, which would turn the whole path where the road bends.
+/// times less exact along the road, so this direction has less weight. With equal weights, its
+/// errors would turn the whole path where the road bends.
 HeadingTurn MotionDirection::turn() const {
   const Se2 first = samples_.front().matched * samples_.front().driven.inverse();
   double map_from_driven_rad = first.yaw_rad;

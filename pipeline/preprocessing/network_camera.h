@@ -18,10 +18,11 @@ inline constexpr double kLeastNetworkFocalPx = 0.5 * kNetworkWidthPx;
 double real_pixels_per_network_pixel(const Intrinsics& real);
 
 /// The network's camera has the position and direction of the real camera, and no distortion. It
-/// shows the whole width of the real image, or its middle 90 degrees if the lens is wider. But it
-/// has the focal length of the lens's middle. So it lacks the edges of a fisheye of less than 114
-/// degrees: of an angle a it shows 2 atan(a / 2). Its pixels are square. The horizon of a level
-/// vehicle is at kNetworkHorizonRow in the principal column.
+/// shows the whole width of the real image, or its middle 90 degrees if the lens is wider. Its
+/// focal length is that of the middle of the lens. It therefore lacks the edges of a fisheye image
+/// of less than 114 degrees: if that image covers an angle a, it shows only 2 atan(a / 2). Its
+/// pixels are square. The horizon of a level vehicle is at kNetworkHorizonRow in the principal
+/// column.
 CameraModel network_camera(const CameraModel& camera);
 
 Rig network_rig(const Rig& rig);

@@ -16,7 +16,7 @@ namespace {
 static_assert(kMostImageSide_px <= (RemapTable::kMaxTaps - 1) * kNetworkWidthPx);
 
 /// Computes the weights of the pixels under a box of width `box` around `centre`, in a line of
-/// `length` pixels. The line continues with its end pixels. Returns the first pixel.
+/// `length` pixels. Beyond its ends the line repeats its end pixels. Returns the first pixel.
 int box_weights(double centre, double box, int length, std::span<uint16_t> weights) {
   const int taps = static_cast<int>(weights.size());
   const int begin = static_cast<int>(std::floor(centre - 0.5 * box + 0.5));

@@ -15,9 +15,9 @@ namespace bevloc {
 struct MatchScore {
   /// ZNCC of both sides over the inner cells and all channels, at least 0.
   double overlap = 0.0;
-  /// Per axis (x, y, yaw): the cosine between both sides' gradients along the axis, at least 0. The
-  /// gradient along x belongs to what shows a movement along x, so this is the overlap of stop
-  /// lines and dash ends, while that of y is the overlap of lane lines and kerbs.
+  /// Per axis (x, y, yaw): the cosine between both sides' gradients along the axis, at least 0.
+  /// Stop lines and dash ends have a gradient along x, so the value of x is their overlap. The
+  /// value of y is the overlap of lane lines and kerbs.
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
 };
 

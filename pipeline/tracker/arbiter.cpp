@@ -69,7 +69,8 @@ const Eigen::Vector3d kHarmlessOffset{0.7, 0.28, radians(0.75)};
 /// How long a verdict against dead reckoning lasts after the last contradiction.
 constexpr Duration kOdometryMemory = std::chrono::seconds(1);
 
-/// The offset of the pose that a match supports: an axis along which it sees little supports none.
+/// The part of the innovation that a match supports. It is small along an axis where the match sees
+/// little.
 Eigen::Vector3d supported_offset(const PoseInnovation& innovation) {
   const Eigen::Matrix3d plausible = kPlausibleOffset.cwiseAbs2().asDiagonal();
   return plausible * (plausible + innovation.covariance).ldlt().solve(innovation.error);
@@ -102,7 +103,7 @@ void Arbiter::Voter::add(Time time, const PoseInnovation& innovation, bool passe
   far_off = !passes_gate && innovation.unexplained > kFarOff;
   const Eigen::Vector3d in_sigmas =
       innovation.error.cwiseQuotient(sigma).cwiseMax(-kMaxDriftStep).cwiseMin(kMaxDriftStep);
-  // A measurement that does not see an axis says nothing about its drift.
+  // A measurement that does not see an axis says nothing about the drift along it.
   const Eigen::Array<bool, 3, 1> seen = sigma.array() <= kPlausibleOffset.array();
   if (!innovation.repeats) {
     drift.array() += kDriftGain * seen.cast<double>() * (in_sigmas - drift).array();
@@ -177,7 +178,7 @@ bool Arbiter::yaw_rate_drifts() const {
          agree_on(-1.0, 3, kLeanOfThree) || agree_on(1.0, 3, kLeanOfThree);
 }
 
-/// Whether the heading of the match drifts, and dead reckoning is nearer to that of GNSS.
+/// Whether the heading of the match drifts, and dead reckoning is nearer to the heading of GNSS.
 bool Arbiter::match_turns_alone() const {
   const double match = std::abs(match_.lean().z());
   return match > kDriftLimit && match > std::abs(gnss_.lean().z()) && match_leans_alone();
@@ -267,8 +268,8 @@ bool Arbiter::match_sees(size_t axis, Time now) const {
 }
 
 /// Returns whether the refused GNSS samples are wrong. For this, the match must agree with the
-/// filter. Either GNSS must also have jumped, or the match must see the axis that GNSS is off
-/// along.
+/// filter. Either GNSS must also have jumped, or the match must see the axis along which GNSS
+/// is off.
 bool Arbiter::gnss_refusals_are_denied(Time now) const {
   return match_agrees(now) && (gnss_.jumped || match_sees(gnss_.refused_axis, now));
 }

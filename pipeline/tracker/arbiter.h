@@ -100,7 +100,8 @@ class Arbiter {
     std::array<std::optional<Time>, 3> seen_at;
 
     /// Whether `innovation` differs from the last one that passed by more than undetected errors of
-    /// odometry explain: OdometryMonitor lets pass what a vehicle can do.
+    /// odometry explain. OdometryMonitor does not detect an error that looks like a possible
+    /// motion.
     bool jumps(Time time, const PoseInnovation& innovation) const;
     /// `drift` in its own standard deviations.
     Eigen::Vector3d lean() const;
@@ -119,7 +120,7 @@ class Arbiter {
   };
 
   static constexpr int kDisputingRefusals = 3;
-  /// Refused GNSS samples in a row that exclude GNSS while the match agrees.
+  /// GNSS is excluded after this many refused samples in a row, if the match agrees.
   static constexpr int kGnssRefusals = 5;
 
   bool match_is_disputed() const {
@@ -141,7 +142,7 @@ class Arbiter {
   bool yaw_rate_drifts() const;
   /// The lean of a bias that the filter has taken into account already.
   double known_wheel_lean_at(Time time) const;
-  /// Excludes the match, which also explains an open dispute.
+  /// Excludes the match. An open dispute of the match then has its verdict.
   void exclude_match();
   void decide_dispute(Verdict& verdict, PoseStanding standing);
   void ask_gnss(Verdict& verdict);

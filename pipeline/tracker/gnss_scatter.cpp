@@ -31,8 +31,8 @@ constexpr double kMotionNoise_rad = radians(0.05);
 struct Weights {
   double first = 0.5;
   double last = 0.5;
-  /// Variance of the comparison for samples with a variance of 1 whose errors are independent, and
-  /// for errors that change slowly.
+  /// Variance of the difference between them if each sample has a variance of 1: for independent
+  /// errors, and for errors that change slowly.
   double of_noise = 1.5;
   double of_correlated = 0.0;
 };

@@ -12,9 +12,9 @@ constexpr Duration kPeriod = std::chrono::seconds(1);
 constexpr double kPriorSigma_m = 5.0;
 /// Growth of the offset, because a map has another offset from one road to the next.
 constexpr double kGrowth_m_per_sqrt_s = 0.003;
-/// Sigma of the pose together with what differs from one GNSS sample to the next.
+/// Sigma of the errors of the pose and of the noise of GNSS together.
 constexpr double kScatter_m = 0.4;
-/// Squared distance of a sample that is not used.
+/// A sample with a larger squared distance is not used.
 constexpr double kOutlier = 16.0;
 /// If all samples are outliers for this many correlation times, the cause is not an error of GNSS.
 constexpr double kLongestErrors = 5.0;

@@ -25,7 +25,8 @@ class MapOffsetMonitor {
 
   /// `difference_m` is GNSS minus pose along the axes of the map. `sigma_m` is the sigma of GNSS
   /// per axis. Uses at most one sample per second. Ignores a sample that is too far from what the
-  /// filter expects, such as after a jump of GNSS, unless all samples of several minutes are.
+  /// filter expects, such as after a jump of GNSS, unless all samples have been so for several
+  /// minutes.
   void add(Time time, const Eigen::Vector2d& difference_m, double sigma_m);
 
   /// Becomes true when the offset is certain and more than 0.75 m. Stays true until the estimated

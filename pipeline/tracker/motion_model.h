@@ -77,8 +77,8 @@ struct MotionNoise {
   double longitudinal_m_per_sqrt_m = 0.02;    ///< wheel speed noise: 0.2 m after 100 m
   double lateral_m_per_sqrt_m = 0.01;         ///< side slip
   double yaw_rad_per_sqrt_s = radians(0.02);  ///< yaw rate noise
-  /// Change of tyre temperature and pressure. The filter must also follow a scale that is suddenly
-  /// wrong by 2 %.
+  /// The scale changes with the temperature and pressure of the tyres. The filter must also follow
+  /// a scale that is suddenly wrong by 2 %.
   double speed_scale_per_sqrt_s = 4e-4;
   /// Drift of the yaw rate sensor's bias. Tracker::loosen_odometry() covers a faster change.
   double yaw_rate_bias_radps_per_sqrt_s = 1e-4;

@@ -11,7 +11,8 @@ namespace {
 constexpr double kConfirmingAlong = 3.0;
 constexpr double kConfirmingAcross = 2.5;
 constexpr double kConfirmingYaw = 3.0;
-/// A GNSS error beyond this refutes the pose: one in 150,000 independent errors per axis.
+/// A GNSS error beyond this refutes the pose. By chance, one in 150,000 independent errors of an
+/// axis exceeds it.
 constexpr double kRefuting = 4.5;
 /// The pose starts again if the estimated scale error of the wheels exceeds this many standard
 /// deviations, because the wheels then slip. Without a new start, the filter would keep the error
@@ -25,8 +26,8 @@ constexpr double kMostYawSigma_rad = radians(30.0);
 /// Refused matches in a row after which a pose that was never valid starts again.
 constexpr int kRefusalsToStartAgain = 5;
 constexpr Duration kMatchAbsence = std::chrono::seconds(1);
-/// What matches said about the place of a pose that is not valid counts for this long after the
-/// latest match. The vehicle may then be in another lane.
+/// While the pose is not valid, the support of its matches counts for this long after the latest
+/// match. After that, the vehicle may be in another lane.
 constexpr Duration kSupportLifetime = std::chrono::seconds(5);
 /// A GNSS sample older than this says nothing about the pose.
 constexpr Duration kGnssLifetime = std::chrono::seconds(2);

@@ -36,13 +36,13 @@ struct PoseMeasurement {
 /// (x m, y m, yaw rad).
 struct PoseInnovation {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
-  /// Expected covariance of `error`: the sum of those of the estimate, the noise and the correlated
-  /// part.
+  /// Expected covariance of `error`: the sum of the covariances of the estimate, the noise and
+  /// the correlated part.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   /// Squared Mahalanobis distance. It has a chi-square distribution with three degrees of freedom
   /// if the covariances are correct.
   double squared_distance = 0.0;
-  /// Whether it is of a match of a standing vehicle, which says what the match before said.
+  /// Whether it comes from a match of a standing vehicle, which only repeats the match before.
   bool repeats = false;
   /// Squared distance after renew_match_error(), but at most `squared_distance`. For GNSS it equals
   /// `squared_distance`.

@@ -16,7 +16,8 @@ const Eigen::Vector3d kWrongWithin{10.0, 10.0, radians(10.0)};
 constexpr double kWrongPlaceRate_per_s = 1e-9;
 constexpr int kBisections = 30;
 
-/// How much better a wrong place explains the normalised GNSS error of one axis than the right one.
+/// How much better a wrong place than the right place explains the normalised GNSS error of an
+/// axis.
 double likelihood_ratio(double error, double sigma, double wrong_within) {
   const double density_right = std::exp(-0.5 * error * error) / std::sqrt(2.0 * std::numbers::pi);
   const double density_wrong = sigma / (2.0 * wrong_within);

@@ -7,11 +7,11 @@
 namespace bevloc {
 namespace {
 
-/// The vehicle counts as standing if it is within this distance of where the way began for this
-/// time.
+/// The vehicle counts as standing if, after this time, it is still within this distance of the
+/// start of the way.
 constexpr double kStanding_m = 0.5;
 constexpr double kStanding_s = 2.0;
-/// A longer time adds more error of dead reckoning than it gains.
+/// After this time the way begins again, because dead reckoning has become too inexact.
 constexpr double kLongest_s = 30.0;
 /// Longest time between two samples of odometry, and between a position and the latest sample.
 constexpr double kLongestGap_s = 0.5;

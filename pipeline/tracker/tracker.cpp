@@ -262,7 +262,8 @@ FilterState Tracker::state_at(Time time, size_t events_until) const {
 
 size_t Tracker::position_of(Time time) const {
   const size_t events_until = count_until(history_, time);
-  // The first event makes room in a full history, but the new one would have to follow it.
+  // A full history drops its first event to make room. The new event cannot take its place, because
+  // its state is computed from the event before it.
   return history_.full() && events_until == 1 ? 0 : events_until;
 }
 

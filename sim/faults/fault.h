@@ -118,7 +118,7 @@ struct Fault {
   FaultAmounts amounts{};
 
   bool is_active(double time_s) const { return time_s >= from_s && time_s < until_s; }
-  /// Whether a fault of cameras concerns this one.
+  /// Whether a fault of cameras affects the camera `index`.
   bool concerns(int index) const { return !camera || camera == index || other_camera == index; }
 };
 

@@ -35,7 +35,7 @@ class FaultBoard {
   /// The faults of one camera.
   std::vector<Fault> active_on_camera(int camera, double time_s) const;
   /// All faults of an input, whatever their time. For the clock, these include removed suspensions
-  /// that had begun, because the drive does not go back.
+  /// that had begun, because the time of the drive never jumps back.
   std::vector<Fault> all(FaultInput input) const;
 
   /// Blocks while a fault of this kind hangs the calling thread, in real time. `time_s` gives the
@@ -46,7 +46,7 @@ class FaultBoard {
 
  private:
   bool hangs(FaultKind kind, int camera, double time_s) const;
-  /// Keeps what cannot be undone when the fault is removed.
+  /// Keeps a suspension that has begun. Its effect stays when the fault is removed.
   void note_past(const NumberedFault& listed, double now_s);
 
   mutable std::mutex mutex_;

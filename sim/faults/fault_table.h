@@ -14,7 +14,7 @@ enum class FaultInput : uint8_t {
   kGnss,
   kOdometry,
   kCamera,
-  kMap,  ///< the map, or the world that it does not fit; only from the start of the drive
+  kMap,  ///< the map or the world, which then differ; from the start, except for kMapCut
   kClock,
   kBus,
   kThread,  ///< not an input: a thread of the appliance hangs in a simulated device

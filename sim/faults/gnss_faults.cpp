@@ -10,7 +10,7 @@ namespace {
 
 constexpr OldReadingKinds kOldGnss{FaultKind::kGnssStuck, FaultKind::kGnssLate};
 
-/// An offset with parts in the map's directions and in the vehicle's.
+/// The sum of an offset along the map's axes and one along the vehicle's.
 Eigen::Vector2d in_map(const Eigen::Vector2d& east_north, const Eigen::Vector2d& along_across,
                        double yaw_rad) {
   const Se2 map_from_vehicle_directions{0.0, 0.0, yaw_rad};
@@ -35,7 +35,7 @@ Eigen::Vector2d offset_of(const Fault& fault, double since_s, double time_s, con
       return since_s *
              in_map({by.east_mps, by.north_mps}, {by.along_mps, by.across_mps}, yaw_at(time_s));
     case FaultKind::kGnssSpoof:
-      // A spoofer moves the whole track, so the direction is that of the first moment.
+      // A spoofer moves the whole track alike, so the heading at its first moment counts.
       return pulled_share(since_s, by.pull_s) *
              in_map({by.east_m, by.north_m}, {by.along_m, by.across_m}, yaw_at(time_s - since_s));
     default:

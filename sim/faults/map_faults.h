@@ -1,4 +1,5 @@
-// Faults of the map that the appliance gets, against the world that its cameras see.
+// Applies faults to the map that the appliance gets. The world that its cameras see does not
+// change.
 #pragma once
 
 #include <span>

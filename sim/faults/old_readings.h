@@ -14,7 +14,7 @@ struct OldReadingKinds {
   FaultKind late;   ///< its readings are `delay_ms` old
 };
 
-/// The index of the reading that a sensor with this period sends as the one with the index `due`.
+/// The index of the reading that a sensor with this period sends when the reading `due` is due.
 /// The times of the `active` faults are those of the drive.
 size_t sent_index(size_t due, double period_s, OldReadingKinds kinds,
                   std::span<const Fault> active);

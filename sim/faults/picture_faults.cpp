@@ -53,7 +53,7 @@ void darken(RgbImage& image, double brightness, SensorNoise& noise) {
   for (uint8_t& pixel : image.pixels) pixel = to_pixel(brightness * pixel, noise.next());
 }
 
-/// Glare around a point above the middle of the picture. It covers all of it at strength 1.
+/// Adds glare around a point above the middle of the picture. At strength 1 it covers the picture.
 void blind(RgbImage& image, double strength, SensorNoise& noise) {
   const double reach_px = std::hypot(image.width, image.height);
   const double centre_u = 0.5 * image.width;

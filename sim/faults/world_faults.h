@@ -1,4 +1,5 @@
-// Faults of the world that the cameras see, against the map that the appliance gets.
+// Applies faults to the world that the cameras see. The map that the appliance gets does not
+// change.
 #pragma once
 
 #include <span>

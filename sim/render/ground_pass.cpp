@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostTaps = 12;
 static_assert(kRun <= GroundTiles::kMostHeld, "all tiles of a run fit into the window at once");
 constexpr float kFarthestM = 900.0F;
-/// Curved ground hides an object if its distance is below this share of the object's distance.
+/// Curved ground hides an object if the ground is nearer than this share of the object's distance.
 constexpr float kBehindGround = 0.97F;
 /// The tile directory reaches this far at the finest level.
 constexpr float kReachOfFinestM =

@@ -47,7 +47,7 @@ class PanelBuilder {
   void add_post(const Post& post);
   void add_vehicle(const VehicleBody& body, bool lights_on);
   void add_vehicle_sides(const VehicleBody& body, const Se2& map_from_body);
-  /// The place from the camera of a point that is `height_m` above the ground at `foot`.
+  /// The point at `position`, `height_m` above the ground at `foot`, relative to the camera.
   Eigen::Vector3f from_camera(const Eigen::Vector2d& position, double height_m,
                               const Eigen::Vector2d& foot) const {
     const double above_plane_m = height_m + ground_.height_m(foot);

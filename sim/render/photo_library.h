@@ -32,7 +32,8 @@ class GroundPhoto {
 class PhotoLibrary {
  public:
   /// Reads `folder`/photos.txt, which `script/photos` writes: one line for each photograph with its
-  /// use, PNG file, side in pixels and side in metres. Fails with place, found and wanted.
+  /// use, PNG file, side in pixels and side in metres. Fails if the index or a photograph is
+  /// missing or wrong.
   static Result<PhotoLibrary> load(const std::filesystem::path& folder);
 
   /// A photograph for the ground of a world. Returns null if the library has none, or if the seed

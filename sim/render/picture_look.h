@@ -7,7 +7,7 @@
 
 namespace bevloc::sim {
 
-/// The lower edge of a picture that shows the own vehicle, as a parabola.
+/// The part of a picture that shows the own vehicle: everything below a parabola.
 struct Bodywork {
   float left = 0.0F;  ///< height at the left, middle and right, as shares of the picture's height
   float middle = 0.0F;
@@ -26,7 +26,7 @@ struct PictureLook {
   float gamma = 1.0F;                           ///< below 1 brightens the shadows
   float sharpening = 0.0F;                      ///< weight of sharpening; below 0 it blurs
   int smear_px = 0;                             ///< motion blur along the rows, to either side
-  int black_rows = 0;                           ///< number at the lower edge
+  int black_rows = 0;                           ///< number of black rows at the lower edge
   Bodywork bodywork{};
 };
 

@@ -13,7 +13,7 @@ struct MapHabits {
   double long_divider = 0.0;     ///< divider ends that lie 5 to 20 m beyond it, in the junction
   double broken_divider = 0.0;   ///< dividers that lack 10 to 40 m, as at a side road
   double inner_boundary = 0.0;   ///< boundaries up to 0.7 m inside, like an outline of lanes
-  double closed_mouth = 0.0;     ///< boundary ends 5 to 20 m straight on, across a mouth
+  double closed_mouth = 0.0;     ///< boundary ends that go on 5 to 20 m straight, across a mouth
   double double_boundary = 0.0;  ///< boundaries with another one 0.5 to 4 m outside, like a wall
 
   bool operator==(const MapHabits&) const = default;

@@ -53,7 +53,7 @@ struct SampleStream {
   /// Nuisances::rig_variety. Their lenses do not count, because the network's images are rendered
   /// directly. Pixels that show the own vehicle are black.
   const Rig* rig = nullptr;
-  /// If set, they cover surfaces of every world. They must outlive the stream.
+  /// If set, these photographs cover surfaces of every world. They must outlive the stream.
   const PhotoLibrary* photos = nullptr;
   /// Stronger nuisances in a share of the samples, on top of `nuisances`.
   TrainingNuisances training{};

@@ -78,7 +78,7 @@ class Drive {
   uint64_t seed_;
   double duration_s_;
   Pace pace_;
-  double planned_start_s_;   ///< leaves as much of the route behind the vehicle as it reverses
+  double planned_start_s_;  ///< where the drive starts in the plan, so that the vehicle can reverse
   SmoothNoise pitch_noise_;  ///< noise over the distance driven, like roll and lift
   SmoothNoise roll_noise_;
   SmoothNoise lift_noise_;

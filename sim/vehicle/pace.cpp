@@ -7,7 +7,7 @@
 namespace bevloc::sim {
 namespace {
 
-/// What became of a moment after this time with the same change of the pace.
+/// The moment `elapsed_s` after this one, if the pace goes on changing at the same rate.
 Pace::Moment later(const Pace::Moment& moment, double elapsed_s) {
   return {.planned_s = moment.planned_s + elapsed_s * moment.pace +
                        0.5 * elapsed_s * elapsed_s * moment.change_per_s,
@@ -23,7 +23,7 @@ Pace::Pace(std::vector<PacePoint> points) {
   for (size_t i = 0; i < points.size(); ++i) {
     const Piece& before = pieces_.back();
     Moment start = later(before.start, points[i].at_s - before.from_s);
-    start.pace = points[i].pace;  // without the rounding errors of the way to it
+    start.pace = points[i].pace;  // exact, without the rounding errors of later()
     start.change_per_s = 0.0;
     if (i + 1 < points.size()) {
       assert(points[i + 1].at_s > points[i].at_s);

@@ -22,15 +22,14 @@ class Pace {
   explicit Pace(std::vector<PacePoint> points);
 
   struct Moment {
-    double planned_s = 0.0;  ///< when the plan has the vehicle where it is now
+    double planned_s = 0.0;  ///< time at which the planned drive is at this place
     double pace = 1.0;
     double change_per_s = 0.0;
   };
-  /// At time 0 the vehicle is where the plan has it at time 0. Where it reverses from there, the
-  /// planned time is negative.
+  /// At time 0 the planned time is 0. It becomes negative if the vehicle reverses from its start.
   Moment at(double time_s) const;
 
-  /// The planned time where the vehicle is farthest back, until a time; at most 0.
+  /// The least planned time up to `until_s`, where the vehicle is farthest back. It is at most 0.
   double earliest_planned_s(double until_s) const;
 
  private:

@@ -59,7 +59,7 @@ class Path {
   std::vector<double> stations_;             ///< stations of the points
 };
 
-/// A route counts each lane as at least this long, so that one along lanes without length ends.
+/// A route counts each lane as at least this long, so that a route along lanes of length 0 ends.
 inline constexpr double kLeastStep_m = 0.01;
 
 /// Drops the points that lie on the straight between their neighbours.

@@ -29,7 +29,8 @@ struct DriveSample {
 /// How a training sample differs from its recorded frameset.
 struct SampleChoice {
   Se2 correction;  ///< dT = T0^-1 T
-  /// Others are black, as missing ones. A frameset that has none of these keeps all that it has.
+  /// The cameras that the sample shows; the others are black, as if missing. If the frameset has
+  /// none of these cameras, the sample shows all cameras of the frameset.
   CameraMask cameras;
 };
 

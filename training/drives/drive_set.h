@@ -16,8 +16,8 @@
 
 namespace bevloc::drives {
 
-/// Which places the samples are from. No sample shows a place of a part that is named after its
-/// own.
+/// Which places the samples are from. No sample shows a place of a part that comes later in this
+/// list.
 enum class DrivePart : uint8_t {
   kTraining,     ///< the network learns from them
   kCalibration,  ///< for the ranges of int8, the scales of the solvers and the early stop

@@ -16,8 +16,7 @@ struct SureLimits {
 
 /// The recorded solutions where the state was TRACKING and their sigmas were within the limits. A
 /// pose is smoothed with the solutions of half a second before and after it: the value at its time
-/// of the parabola that fits them best. The result has no
-/// poses if the appliance was never sure.
+/// of the parabola that fits them best. The result has no poses if the appliance was never sure.
 Result<ReferenceTrajectory> own_track(evaluation::Recording& recording,
                                       const SureLimits& limits = {});
 

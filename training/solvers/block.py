@@ -14,9 +14,9 @@ The features are standardised once, not per hypothesis. K_b is interpolated betw
 cubic convolution along each axis (cubic.py). P = softmax(joint_scale * ZNCC) over all hypotheses.
 The marginals of P are the distributions of x, y and yaw; the estimates are their means.
 
-On the CPU the paper's hypotheses in float32 are scored by the C++ code (training/joint_volume.py,
-pipeline/solver/reference/joint_volume.h), which is faster, where its library is built. All others
-are scored here.
+If its library is built, the C++ code (training/joint_volume.py,
+pipeline/solver/reference/joint_volume.h) scores the paper's hypotheses in float32 on the CPU,
+because it is faster. This file scores all others.
 """
 
 from __future__ import annotations

@@ -4,9 +4,9 @@ channels together:
 ZNCC = (mean(a b) - mean(a) mean(b)) / sqrt(var(a) var(b)) with population moments; 0 if a side is
 constant. Moved features count as zero in cells that they do not cover.
 
-For float32 features on the CPU and corrections in the range of the paper's hypotheses, the sums
-come from the C++ code (training/moved_sums.py), which is faster, where its library is built. All
-others are computed here.
+If its library is built, the C++ code (training/moved_sums.py) computes the sums for float32
+features on the CPU and corrections in the range of the paper's hypotheses, because it is faster.
+This file computes all others.
 """
 
 from __future__ import annotations

@@ -16,9 +16,9 @@ std::string fourcc_name(uint32_t fourcc);
 
 uint32_t fourcc_of(PixelFormat format);
 
-/// Returns whether an image of this field order (V4L2_FIELD_*) is no half image and has no rows of
-/// another time. The kernel's documentation forbids drivers to answer V4L2_FIELD_ANY. A driver that
-/// does it knows no field orders, so its images count as progressive.
+/// Returns whether an image of this field order (V4L2_FIELD_*) is a full image whose rows all
+/// belong to one time. The kernel's documentation forbids drivers to answer V4L2_FIELD_ANY. A
+/// driver that does so anyway does not know field orders, so its images count as progressive.
 bool is_progressive(uint32_t field);
 
 /// Returns the name of a field order for messages, such as "interlaced".

@@ -1,4 +1,4 @@
-// What all parts of the page draw with.
+// Functions for drawing that all parts of the page use.
 
 export const byId = (id) => document.getElementById(id);
 
@@ -23,7 +23,8 @@ export function setText(node, text) {
   if (node.textContent !== wanted) node.textContent = wanted;
 }
 
-/// Gives `parent` these children. A child that looks like the one in its place is not written.
+/// Replaces the children of `parent` by these. A child that equals the present one in its place is
+/// left alone.
 export function setChildren(parent, children) {
   children.forEach((child, index) => {
     const present = parent.children[index];

@@ -2,14 +2,14 @@
 import {byId, classColours, colour, drawVehicle, prepare, strokeLines} from "./drawing.js";
 import {shown} from "./state.js";
 
-const ENLARGED = 10;  // the ellipse on the map, which is smaller than the vehicle
-const STEP_M = 0.5;  // between the points of the trail
+const ENLARGED = 10;  // drawn this much larger, because the ellipse is smaller than the vehicle
+const STEP_M = 0.5;  // the distance between two points of the trail
 const POINTS = 2000;
 const VIEW_M = 130;  // width of the panel
 let interrupted = false;  // whether there was no pose since the last point
 
 function drawEllipse(context, pose, x, y, scale) {
-  // The covariance along the vehicle's axes, as the two half axes of an ellipse of three sigma.
+  // Turns the covariance along the vehicle's axes into the half axes of an ellipse of three sigma.
   const a = pose.sigma.longitudinal_m ** 2;
   const d = pose.sigma.lateral_m ** 2;
   const b = pose.longitudinal_lateral_covariance_m2;

@@ -1,4 +1,4 @@
-// Which names imported cameras have.
+// Chooses the names of imported cameras.
 #pragma once
 
 #include <map>
@@ -14,9 +14,9 @@ namespace bevloc::calibration_import {
 bool is_ours(std::string_view name);
 
 /// Renames cameras after their file (ImportedCamera::file_stem), because some programs give each
-/// camera the same name. A camera gets the stem if this is one of kCameraNames and its name is not,
-/// or if another camera has its name. It keeps a name that `our_names` maps and that no other
-/// camera has. It also keeps one of kCameraNames if the stem is none.
+/// camera the same name. If the stem is one of kCameraNames, the camera takes it, unless no other
+/// camera has its name and this name is one of kCameraNames or in `our_names`. Any other stem
+/// replaces only a name that several cameras have and that is not one of kCameraNames.
 void name_after_files(const std::map<std::string, std::string>& our_names,
                       std::vector<ImportedCamera>& cameras);
 

@@ -117,8 +117,8 @@ std::vector<ForeignFile> without_byte_order_marks(std::vector<ForeignFile> files
   return files;
 }
 
-/// Makes a message about a rig file name the source of the camera, because there is no rig file
-/// yet.
+/// Replaces the place in a message of parse_rig() by the place that the camera comes from, because
+/// there is no rig file yet.
 std::string with_source(const std::string& message,
                         const std::array<CameraSource, kCameraCount>& sources) {
   constexpr std::string_view kKey = ": cameras.";
@@ -148,7 +148,7 @@ Result<ImportedRig> import_rig(const std::vector<ForeignFile>& files,
     }
     calibration_import::name_after_files(options.our_names, cameras);
     auto built = calibration_import::build_rig(std::move(cameras), options);
-    // This refuses what a rig file would refuse.
+    // The rig must pass the checks of a rig file.
     const auto rig = parse_rig(format_rig(built.rig), "imported rig");
     if (!rig) return tl::unexpected(Error{with_source(rig.error().message, built.sources)});
     return ImportedRig{*rig, std::move(built.notes)};

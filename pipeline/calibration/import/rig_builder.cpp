@@ -215,7 +215,8 @@ class RigBuilder {
     return vehicle_from_child_of(camera.name, true, visited);
   }
 
-  /// The place of a camera or of another frame, computed from that of a camera that hangs on it.
+  /// The place of a camera or of another frame, computed from a camera whose place is given
+  /// relative to it.
   std::optional<Se3> vehicle_from_child_of(const std::string& parent, bool is_camera,
                                            std::set<std::string>& visited) const {
     for (const ImportedCamera& child : cameras_) {

@@ -27,11 +27,11 @@ struct PaintSighting {
   std::array<double, kMostCandidates> offset_px{};
 };
 
-/// Searches the image at each point that the camera should see with a line at least 1 px wide, up
-/// to `reach_px` to either side of the predicted line.
-/// Points without paint have sightings without candidates. A stripe has a rising and a falling edge
-/// that are 0.06 to 0.30 m apart, and similar ground on both sides. A step has a rising edge
-/// towards its bright side. `camera` and `vehicle_from_map` are the best known ones.
+/// Searches the image for paint at each point where the camera should see a line at least 1 px
+/// wide, up to `reach_px` to either side of the predicted line. Points without paint have sightings
+/// without candidates. A stripe has a rising and a falling edge that are 0.06 to 0.30 m apart, and
+/// similar ground on both sides. A step has a rising edge towards its bright side. `camera` and
+/// `vehicle_from_map` are the best known ones.
 std::vector<PaintSighting> find_paint(const GreyImage& image, const CameraModel& camera,
                                       const Se2& vehicle_from_map,
                                       std::span<const PaintPoint> points, double reach_px);

@@ -70,9 +70,9 @@ class MapBuilder {
   std::optional<Meaning> meaning_of(std::string_view kind,
                                     const std::optional<Meaning>& normally) const;
 
-  /// Adds a line, or the ring of a crossing, if it becomes something, and reports it if it does not
-  /// (finish() reports the others). `where` names it ("way 12"); `why_not` says why it is dropped
-  /// if `normally` is nothing.
+  /// Adds a line, or the ring of a crossing, if it becomes an element of the map. finish() reports
+  /// these lines. Any other line is reported at once. `where` names it ("way 12"); `why_not` says
+  /// why it is dropped if `normally` is nothing.
   void add(std::string_view kind, std::string_view where, const std::optional<Meaning>& normally,
            std::string_view why_not, Line3 line);
 

@@ -66,7 +66,8 @@ void cap_cpu_isa(IsaCap cap) {
   const std::lock_guard lock(mutex);
   if (current == cap) return;
   const dnnl::cpu_isa isa = onednn_isa(cap);
-  // Without a cap nothing must be set, so another library may have used oneDNN before.
+  // Without a cap there is nothing to set, so it does not matter whether another library has used
+  // oneDNN before.
   const bool is_set =
       !current && (isa == kNoCap || dnnl::set_max_cpu_isa(isa) == dnnl::status::success);
   if (!is_set) {

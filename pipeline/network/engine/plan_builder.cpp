@@ -141,8 +141,8 @@ void PlanBuilder::add_direct(const ConvStep& step) {
       {source, destination, added < 0 ? source : added});
 }
 
-/// Without VNNI, oneDNN adds the products of two 8-bit numbers in 16 bits, and sums beyond them are
-/// cut. Weights of up to kMostInexact never reach them.
+/// Without VNNI, oneDNN adds the products of two 8-bit numbers in 16 bits, and larger sums
+/// saturate. With weights of up to kMostInexact no sum saturates.
 void check_products(const ConvStep& step) {
   constexpr int kMostInexact = 64;
   if (step.weights.type != ElementType::kInt8 || has_exact_int8_products()) return;

@@ -16,9 +16,9 @@ class Asphalt {
   explicit Asphalt(const std::vector<CutSection>& sections);
 
   /// Whether asphalt of the same height (kSameLevel_m) lies beside a piece of a section's border,
-  /// on the side where the section has none. In a junction it also counts if another road has it up
-  /// to 3 m beside the piece, because the roads of a junction leave small gaps between each other
-  /// that are asphalt in truth.
+  /// on the side where the section has none. In a junction, asphalt of another road up to 3 m
+  /// beside the piece also counts, because the small gaps between the roads of a junction are
+  /// asphalt in truth.
   bool continues_beside(const CutSection& own, const Eigen::Vector3d& from,
                         const Eigen::Vector3d& to, bool left_paved) const;
 

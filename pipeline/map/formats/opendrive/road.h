@@ -166,7 +166,7 @@ struct Road {
 /// The parts of the reference line between its gaps, up to the length of the road.
 std::vector<Stretch> stretches_of(const Road& road);
 
-/// Gives single-sided sections, which are in the order of their starts, the other side.
+/// Adds the other side to single-sided sections. `sections` must be in the order of their starts.
 void complete_sides(std::vector<LaneSection>& sections);
 
 /// The parts of a road that are lost because the file is wrong there, as sentences with file, line,
