@@ -32,13 +32,16 @@ function(bevloc_compile_together name)
 endfunction()
 
 # bevloc_library(NAME SOURCES... [FAST] [LINK libs...])
-# FAST compiles with -O3. Libraries with the inner loops need it.
+# FAST compiles with -O3. Libraries with the inner loops need it. With sanitizers, only these libraries
+# are optimized: compiling the others without optimization takes half of the time.
 function(bevloc_library name)
   cmake_parse_arguments(ARG "FAST" "" "LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PUBLIC bevloc_options ${ARG_LINK})
   if(ARG_FAST)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)
+  elseif(NOT BEVLOC_FUZZ)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Sanitize>:-O0>)
   endif()
   bevloc_compile_together(${name})
   # The sources for one instruction set use the same names, and two others only compile with GCC.
@@ -58,9 +61,9 @@ if(CMAKE_CROSSCOMPILING)
   set(BEVLOC_TEST_TIME_FACTOR 20)
 endif()
 
-# bevloc_test(NAME SOURCES... [WHOLE] [LINK libs...]): a GoogleTest program; each of its suites is a
-# CTest test, or, with WHOLE, the program is one (its suites share an expensive set-up). With
-# sanitizers every program is one, because each start of a program takes long.
+# bevloc_test(NAME SOURCES... [WHOLE] [LINK libs...]): a GoogleTest program. Each of its suites is a
+# CTest test. With WHOLE, the program is a single CTest test, because its suites share an expensive
+# set-up. With sanitizers every program is a single test, because each start of a program takes long.
 function(bevloc_test name)
   cmake_parse_arguments(ARG "WHOLE" "" "LINK" ${ARGN})
   add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})

@@ -45,7 +45,7 @@ inline Status create_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!error) return {};
-  return fail("{}: found no way to create this folder ({}), wanted one to write to",
+  return fail("{}: found no way to create this folder ({}), wanted a folder to write to",
               folder.string(), error.message());
 }
 

@@ -1,12 +1,10 @@
 #include "common/image_file.h"
 
-#include <memory>
-
 #include <png.h>
-#include <turbojpeg.h>
 
 #include "common/exif_orientation.h"
 #include "common/files.h"
+#include "common/jpeg.h"
 
 namespace bevloc {
 namespace {
@@ -29,7 +27,7 @@ class PngImage {
   png_image image_{};
 };
 
-/// A file and what its messages say.
+/// An image file, and what error messages say about it.
 struct ImageSource {
   const std::string& path;
   std::string_view size_from = "";  ///< where the wanted size comes from
@@ -51,7 +49,7 @@ Status read_png(const ImageSource& source, const std::string& bytes, RgbImage& i
       check_size(source, static_cast<int>(png->width), static_cast<int>(png->height), image);
   if (!size) return size;
   png->format = PNG_FORMAT_RGB;
-  // Without this flag libpng takes 16-bit samples without a gamma for linear light.
+  // Without this flag libpng assumes that 16-bit samples are linear if the file states no gamma.
   png->flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
   constexpr png_color kBlack{0, 0, 0};
   if (png_image_finish_read(png.get(), &kBlack, image.pixels.data(), 0, nullptr) == 0) {
@@ -62,25 +60,10 @@ Status read_png(const ImageSource& source, const std::string& bytes, RgbImage& i
 }
 
 Status read_jpeg(const ImageSource& source, const std::string& bytes, RgbImage& image) {
-  const std::unique_ptr<void, int (*)(tjhandle)> decompressor(tjInitDecompress(), tjDestroy);
-  const auto* const data = reinterpret_cast<const uint8_t*>(bytes.data());
-  int width = 0;
-  int height = 0;
-  int subsampling = 0;
-  int colours = 0;
-  if (tjDecompressHeader3(decompressor.get(), data, bytes.size(), &width, &height, &subsampling,
-                          &colours) != 0) {
-    return fail("{}: found a damaged JPEG file ({}), wanted a complete one", source.path,
-                tjGetErrorStr2(decompressor.get()));
-  }
-  if (const Status size = check_size(source, width, height, image); !size) return size;
-  // A warning counts as an error: it means that data is corrupt or cut off and the rest is grey.
-  if (tjDecompress2(decompressor.get(), data, bytes.size(), image.pixels.data(), width, 0, height,
-                    TJPF_RGB, 0) != 0) {
-    return fail("{}: found a damaged JPEG file ({}), wanted a complete one", source.path,
-                tjGetErrorStr2(decompressor.get()));
-  }
-  return {};
+  JpegDecoder decoder;
+  if (const Status opened = decoder.open(bytes, source.path); !opened) return opened;
+  const Status size = check_size(source, decoder.width_px(), decoder.height_px(), image);
+  return size ? decoder.decode(image) : size;
 }
 
 Status read_bytes(const ImageSource& source, const std::string& bytes, RgbImage& image) {

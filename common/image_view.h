@@ -51,6 +51,18 @@ constexpr std::string_view to_string(PixelFormat format) {
   return "unknown";
 }
 
+/// Position of the first red pixel of a Bayer image: row and column are 0 or 1.
+struct RedPixel {
+  int row;
+  int col;
+};
+
+constexpr RedPixel red_of(PixelFormat format) {
+  const bool is_below = format == PixelFormat::kBayerGbrg || format == PixelFormat::kBayerBggr;
+  const bool is_right = format == PixelFormat::kBayerGrbg || format == PixelFormat::kBayerBggr;
+  return {is_below ? 1 : 0, is_right ? 1 : 0};
+}
+
 /// How YUV was computed from RGB (ITU-R BT.601-7, BT.709-6). Limited range: black is 16, white 235.
 enum class YuvMatrix : uint8_t { kBt601, kBt709 };
 struct YuvEncoding {

@@ -32,8 +32,30 @@ class JpegEncoder {
 /// Whether JpegEncoder encodes images of this format.
 bool can_encode_jpeg(PixelFormat format);
 
-/// Converts yuyv, uyvy and nv12 into `rgb`, which has the size of the image.
-void convert_to_rgb(const ImageView& image, RgbImage& rgb);
+/// A decoder that keeps its memory between calls. One thread.
+class JpegDecoder {
+ public:
+  JpegDecoder();
+
+  /// Reads the head of a JPEG file, which must stay valid until the last decode(). Fails if it is
+  /// damaged. `place` begins the error messages.
+  Status open(std::string_view file, std::string_view place);
+  int width_px() const { return width_px_; }
+  int height_px() const { return height_px_; }
+
+  /// Decodes the open file into `image`, which has its size, or its size divided by 2, 4 or 8 and
+  /// rounded up. Fails if the file is damaged or cut off. The pixels are then undefined.
+  Status decode(RgbImage& image);
+
+ private:
+  Status damaged() const;
+
+  std::unique_ptr<void, int (*)(void*)> decompressor_;
+  std::string_view file_;
+  std::string place_;
+  int width_px_ = 0;
+  int height_px_ = 0;
+};
 
 /// Decodes a whole JPEG file. `place` begins the error message.
 Result<RgbImage> decode_jpeg(std::string_view bytes, std::string_view place);

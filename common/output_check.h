@@ -48,7 +48,7 @@ inline Status check_writable(const std::filesystem::path& out) {
                 out.string());
   }
   if (const std::error_code refused = cannot_write_in(folder)) {
-    return fail("{}: found no way to write in the folder {} ({}), wanted one that allows it",
+    return fail("{}: found no way to write in the folder {} ({}), wanted a folder that allows it",
                 out.string(), folder.string(), refused.message());
   }
   return {};

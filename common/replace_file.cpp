@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "common/file_descriptor.h"
 #include "common/files.h"
 
 namespace bevloc {
@@ -13,12 +14,9 @@ namespace {
 
 /// Writes what is in memory to the disk, so that a rename cannot overtake the content.
 Status flush_to_disk(const std::filesystem::path& path, int flags) {
-  const int file = ::open(path.c_str(), flags | O_CLOEXEC);
-  const bool flushed = file >= 0 && ::fsync(file) == 0;
-  const int error = errno;
-  if (file >= 0) ::close(file);
-  if (flushed) return {};
-  return fail("{}: cannot write this to disk ({})", path.string(), std::strerror(error));
+  const FileDescriptor file(::open(path.c_str(), flags | O_CLOEXEC));
+  if (file.get() >= 0 && ::fsync(file.get()) == 0) return {};
+  return fail("{}: cannot write this to disk ({})", path.string(), std::strerror(errno));
 }
 
 /// Without this check the file would take the place of a device, such as /dev/stdout.

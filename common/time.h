@@ -22,9 +22,18 @@ constexpr double to_seconds(Duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 
+constexpr double to_milliseconds(Duration duration) {
+  return 1e3 * to_seconds(duration);
+}
+
 /// Rounds towards zero to whole nanoseconds.
 constexpr Duration from_seconds(double seconds) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
+}
+
+/// Rounds towards zero to whole nanoseconds.
+constexpr Duration from_milliseconds(double milliseconds) {
+  return from_seconds(1e-3 * milliseconds);
 }
 
 }  // namespace bevloc

@@ -1,11 +1,9 @@
 // bevlocd for vehicles: localizes the vehicle in its HD map. It contains no simulator; the program
 // with the simulator is evaluation/drive/bevlocd.cpp.
 #include "drivers/gpio/libgpiod_gpio.h"
-#include "firmware/config/config_key.h"
 #include "firmware/daemon/daemon.h"
 #include "firmware/daemon/program.h"
 #include "firmware/devices/can_bus.h"
-#include "pipeline/calibration/rig_yaml.h"
 
 namespace {
 
@@ -18,7 +16,7 @@ Status run(const ProgramOptions& options, const LogWriter& log) {
   if (Status status = override_config(options, *config); !status) return status;
   if (options.check_config) return check_and_print(options, *config);
   set_log_level(config->log_level);
-  const auto rig = at_key("calibration.rig", read_rig(config->rig_file));
+  const auto rig = rig_of(*config);
   if (!rig) return tl::unexpected(rig.error());
   drivers::LibgpiodGpio gpio;
   const auto open_bus = [&config] { return open_can_bus(config->can); };

@@ -7,14 +7,13 @@
 #include <numbers>
 #include <string_view>
 
+#include "common/mix.h"
+
 namespace bevloc::sim {
 
 /// SplitMix64: a 64-bit mixing function.
 constexpr uint64_t mix_seed(uint64_t value) {
-  value += 0x9E3779B97F4A7C15ULL;
-  value = (value ^ (value >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  value = (value ^ (value >> 27U)) * 0x94D049BB133111EBULL;
-  return value ^ (value >> 31U);
+  return mix_bits(value + 0x9E3779B97F4A7C15ULL);
 }
 
 /// Derives an independent seed for one purpose, such as "gnss" or "traffic".

@@ -26,6 +26,7 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from training.losses import sample_1d
+from training.markdown import row
 from training.native import address, library
 from training.option_types import positive
 from training.solver import DEFINITION, Posterior, YawSignature, posterior_mean, yaw_scores
@@ -286,7 +287,7 @@ def table_row(variant: Baseline, scenes: Scenes) -> str:
     errors = ((found - scenes.correction).abs() * _TO_REPORTED).mean(0)
     losses = [_loss(i, p, scenes.correction) for i, p in enumerate(posterior.axes())]
     cells = [variant.title, *(f"{error:.3f}" for error in errors.tolist()), f"{sum(losses):.2f}"]
-    return "| " + " | ".join(cells) + " |"
+    return row(cells)
 
 
 def main() -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 import torch
 
 from training.errors import run_program
-from training.marks import write_between_marks
+from training.markdown import row, table, write_between_marks
 from training.models.config import PRESETS, VIEWS, ModelConfig
 from training.models.cost import Cost, cost_of, deployed_outputs, sample_inputs
 from training.models.layers import channels_last
@@ -42,6 +42,7 @@ _HEADINGS = (
     *(f"{column}, GMAC" for column in _COLUMNS),
     *("all, GMAC", "activations, MiB", "latency, ms"),
 )
+_TEXT_COLUMNS = 3
 
 
 def configurations() -> list[ModelConfig]:
@@ -84,12 +85,11 @@ def _seconds(network: BevNetwork, inputs: tuple) -> float:
     return time.process_time() - start
 
 
-def table() -> str:
+def measured_table() -> str:
     """Measures all networks and prints each row at once. Networks that need too much memory, or
     would take too long at the lowest speed measured so far, are not run."""
-    rules = ["---"] * 3 + ["---:"] * (len(_HEADINGS) - 3)
-    lines = [_row(list(_HEADINGS)), _row(rules)]
-    print(*lines, sep="", end="", flush=True)
+    rows: list[list[str]] = []
+    print(table(_HEADINGS, rows, _TEXT_COLUMNS), end="", flush=True)
     least_speed = math.inf  # multiply-accumulates a second
     for config in configurations():
         cost = cost_of(config)
@@ -102,13 +102,9 @@ def table() -> str:
             seconds = latency_s(config)
             least_speed = min(least_speed, macs / seconds)
             latency = f"{1e3 * seconds:.0f}"
-        lines.append(_row([*counted_cells(config, cost), latency]))
-        print(lines[-1], end="", flush=True)
-    return "".join(lines)
-
-
-def _row(cells: list[str]) -> str:
-    return f"| {' | '.join(cells)} |\n"
+        rows.append([*counted_cells(config, cost), latency])
+        print(row(rows[-1]), flush=True)
+    return table(_HEADINGS, rows, _TEXT_COLUMNS)
 
 
 def main() -> None:
@@ -116,7 +112,7 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help="update docs/network-variants.md")
     write = parser.parse_args().write
     torch.set_num_threads(1)
-    new_table = table()
+    new_table = measured_table()
     if write:
         write_between_marks(DOCUMENT, BEGIN, END, new_table)
 

@@ -22,7 +22,7 @@ from training.errors import run_program
 from training.evaluate import AXES, Inference
 from training.export_onnx import calibration_batches, quantization_of
 from training.layer_errors import LayerError, layer_errors
-from training.marks import write_between_marks
+from training.markdown import table, write_between_marks
 from training.models.network import BevNetwork
 from training.option_types import positive
 from training.quantize import FloatBackend, Quantization, int8_inference, run
@@ -42,11 +42,6 @@ def _percent(share: float) -> str:
     return f"{100 * share:.3f}"
 
 
-def _markdown(header: list[str], rows: list[list[str]]) -> str:
-    rule = ["---"] + ["---:"] * (len(header) - 1)
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in (header, rule, *rows)) + "\n"
-
-
 def layer_table(errors: list[LayerError]) -> str:
     header = [
         *("layer", "largest weight", "largest output", "step", "saturated, %"),
@@ -64,7 +59,7 @@ def layer_table(errors: list[LayerError]) -> str:
         ]
         for e in errors
     ]
-    return _markdown(header, rows)
+    return table(header, rows)
 
 
 def float_inference_of(net: BevNetwork, quantization: Quantization) -> Inference:
@@ -102,7 +97,7 @@ def pose_table(exact: dict[str, Tensor], rounded: dict[str, Tensor]) -> str:
                     f"{difference[:, i].mean():+.4f} ± {spread[i]:.4f}",
                 ]
             )
-    return _markdown(["MAE", "float", "int8", "int8 - float"], rows)
+    return table(["MAE", "float", "int8", "int8 - float"], rows)
 
 
 def report(

@@ -7,7 +7,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from training.marks import write_between_marks
+from training.markdown import table, write_between_marks
 
 BEGIN, END = "<!-- results: written by training.evaluate -->", "<!-- end of results -->"
 _SHIPPED = "nano"  # its card is the folder's README.md
@@ -43,12 +43,7 @@ class Results:
     int8: Metrics
 
 
-def _table(header: list[str], rows: list[list[str]]) -> list[str]:
-    rule = ["---"] + ["---:"] * (len(header) - 1)
-    return ["| " + " | ".join(cells) + " |" for cells in (header, rule, *rows)]
-
-
-def _axis_table(results: Results, axis: str, title: str) -> list[str]:
+def _axis_table(results: Results, axis: str, title: str) -> str:
     def errors(metrics: Metrics, solver: str) -> list[str]:
         return [f"{metrics[f'{solver}_{axis}_{key}']:.3f}" for key, _ in _ERRORS]
 
@@ -60,26 +55,25 @@ def _axis_table(results: Results, axis: str, title: str) -> list[str]:
         metrics = getattr(results, network)
         rows.append([row_title, *errors(metrics, solver), *shares(metrics, solver)])
     header = [title, *(name for _, name in _ERRORS), *(name for _, name in _SHARES)]
-    return _table(header, rows)
+    return table(header, rows)
 
 
-def _iou_table(results: Results) -> list[str]:
+def _iou_table(results: Results) -> str:
     classes = [key for key in results.float if key.startswith("iou_")]
     rows = [
         [network, *(f"{getattr(results, network)[key]:.3f}" for key in classes)]
         for network in ("float", "int8")
     ]
-    return _table(["Perceived mask, IoU", *(key.removeprefix("iou_") for key in classes)], rows)
+    return table(["Perceived mask, IoU", *(key.removeprefix("iou_") for key in classes)], rows)
 
 
 def markdown(results: Results) -> str:
     """One table per axis and one for the masks."""
     trained = results.trained_samples  # 0 for a blend of networks
     samples = f"Training samples of the last run: {trained:,}. " if trained > 0 else ""
-    lines = [f"{samples}Evaluation scenes: {results.samples}.", ""]
-    for axis, title in _AXES:
-        lines += [*_axis_table(results, axis, title), ""]
-    return "\n".join([*lines, *_iou_table(results)])
+    axes = [_axis_table(results, axis, title) for axis, title in _AXES]
+    scenes = f"{samples}Evaluation scenes: {results.samples}.\n"
+    return "\n".join([scenes, *axes, _iou_table(results)])
 
 
 def write_results(models: Path, network: str, results: Results) -> None:
@@ -90,4 +84,4 @@ def write_results(models: Path, network: str, results: Results) -> None:
     card = models / ("README.md" if network == _SHIPPED else f"{network}.md")
     if not card.exists():
         card.write_text(f"# Model card: {network}\n\n{BEGIN}\n{END}\n")
-    write_between_marks(card, BEGIN, END, f"\n\n{markdown(results)}\n\n")
+    write_between_marks(card, BEGIN, END, f"\n\n{markdown(results)}\n")

@@ -177,8 +177,8 @@ class Trainer:
         state = read_checkpoint(path, self.device)
         if (found := state.get("processes", 1)) != count:
             raise CheckpointError(
-                f"{path}: a run with {found} processes, found {count}; start a new run from it with"
-                " --init"
+                f"{path}: found a run with {found} processes, wanted one with {count}; start "
+                f"{found} processes, or a new run with --init"
             )
         load_weights(self.net, state, "model", path)
         load_weights(self.average, state, "ema", path)

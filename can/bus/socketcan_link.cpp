@@ -11,7 +11,6 @@
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include "common/kernel_time.h"
 
@@ -123,10 +122,6 @@ Result<std::unique_ptr<SocketCanLink>> SocketCanLink::open(const std::string& in
   return link;
 }
 
-SocketCanLink::~SocketCanLink() {
-  close(descriptor_);
-}
-
 void SocketCanLink::note(int error) {
   if (is_gone(error)) lost_ = true;
   error_ = error;
@@ -159,12 +154,12 @@ bool SocketCanLink::repair() {
 /// An interface can change between classic CAN and CAN FD only while it is down or gone. Frames
 /// that are too long for it are refused with EINVAL or EMSGSIZE.
 void SocketCanLink::look_at_fd() {
-  lacks_fd_ = wants_fd_ && is_classic(descriptor_, interface_);
+  lacks_fd_ = wants_fd_ && is_classic(descriptor(), interface_);
 }
 
 bool SocketCanLink::is_up() const {
   ifreq request = request_for(interface_);
-  return ioctl(descriptor_, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
+  return ioctl(descriptor(), SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
 }
 
 /// Sets the filters too, because the kernel discards them when the interface disappears.
@@ -174,9 +169,9 @@ bool SocketCanLink::bind_by_name() {
   address.can_ifindex = static_cast<int>(if_nametoindex(interface_.c_str()));
   // Index 0 would bind the socket to all interfaces.
   return address.can_ifindex != 0 &&
-         setsockopt(descriptor_, SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
+         setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
                     static_cast<socklen_t>(filters_.size() * sizeof(can_filter))) == 0 &&
-         bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+         bind(descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
 }
 
 }  // namespace bevloc::can

@@ -10,6 +10,7 @@
 #include <linux/can.h>
 
 #include "can/bus/back_off.h"
+#include "common/file_descriptor.h"
 #include "common/result.h"
 
 namespace bevloc::can {
@@ -42,11 +43,7 @@ class SocketCanLink {
   /// Takes ownership of a descriptor without an interface. repair() does nothing for it.
   explicit SocketCanLink(int descriptor) : descriptor_(descriptor) {}
 
-  ~SocketCanLink();
-  SocketCanLink(const SocketCanLink&) = delete;
-  SocketCanLink& operator=(const SocketCanLink&) = delete;
-
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_.get(); }
 
   /// Records the result of a system call on the socket: 0 or an errno.
   void note(int error);
@@ -64,7 +61,7 @@ class SocketCanLink {
   bool is_up() const;
   void look_at_fd();
 
-  const int descriptor_;
+  const FileDescriptor descriptor_;
   std::string interface_;
   std::vector<can_filter> filters_;
   bool wants_fd_ = false;

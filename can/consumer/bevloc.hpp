@@ -25,13 +25,13 @@ class Receiver {
     bevloc_init(&receiver_, base_id, limits);
   }
 
-  /// Takes any frame of the bus. `now` says when it arrived, not when you read it. True when it
-  /// completes a pose.
+  /// Takes any frame of the bus. `now` says when it arrived, not when you read it. Returns true
+  /// when it completes a pose.
   bool receive(uint32_t id, std::span<const uint8_t> data, std::chrono::microseconds now) {
     return bevloc_receive(&receiver_, id, data.data(), data.size(), count(now));
   }
 
-  /// Whether the latest pose may be used now, and else why not.
+  /// Says whether the latest pose may be used now, and if not, why.
   Answer answer(std::chrono::microseconds now) const {
     return ::bevloc_answer(&receiver_, count(now));
   }

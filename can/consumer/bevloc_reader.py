@@ -58,7 +58,7 @@ VALUES = {
 """The values of a pose."""
 
 LEVELS = ("lateral_m", "longitudinal_m", "yaw_deg")
-"""Those that are protection levels, and the alert limits of AlertLimits."""
+"""The values that are protection levels. AlertLimits has a limit of the same name for each."""
 
 EPOCH_LIMIT_S = 0.039999
 CYCLES_TO_TIMEOUT = 3
@@ -68,7 +68,7 @@ HALF_MICROSECOND_S = 5e-7
 
 @dataclass
 class AlertLimits:
-    """The largest errors with which the function is still safe; 0: it does not need this axis."""
+    """The largest errors with which the function is still safe. 0: it does not need the axis."""
 
     lateral_m: float = 0.0
     longitudinal_m: float = 0.0
@@ -137,7 +137,7 @@ def is_fresh(time_s: float, stamp_s: float, limit_s: float, name: str) -> bool:
 
 
 def is_in_time(time_s: float, stamp_s: float, name: str) -> bool:
-    """The same for a limit of three cycles."""
+    """Whether at most three cycles of the message passed since a stamp."""
     return is_fresh(time_s, stamp_s, 1e-3 * CYCLES_TO_TIMEOUT * MESSAGES[name].cycle_ms, name)
 
 
@@ -192,7 +192,7 @@ class Receiver:
         return self._take_part(name, data, time_s)
 
     def answer(self, time_s: float) -> str:
-        """Whether the latest pose may be used now ("usable"), and else why not. "no_pose" means
+        """Whether the latest pose may be used now ("usable"), and if not, why. "no_pose" means
         that there is no complete pose or no LOC_Status yet."""
         if self.pose is None or self.state is None:
             return "no_pose"
@@ -227,7 +227,7 @@ class Receiver:
                    if name not in LEVELS or getattr(self.limits, name) != 0)
 
     def _is_beyond_limit(self) -> bool:
-        """Any limit but 0 counts. No level is within one that is negative or not a number."""
+        """No level is beyond a limit of 0; each is beyond one that is negative or not a number."""
         assert self.pose is not None
         for name in LEVELS:
             limit, level = getattr(self.limits, name), self.pose[name]
@@ -379,8 +379,8 @@ def show(printer: Printer, frames: Iterator[Frame | float]) -> int:
 def main() -> int:
     parser = argparse.ArgumentParser(description="Prints bevloc's pose and whether it may be used.")
     parser.add_argument("log", nargs="?", help="a candump log")
-    parser.add_argument("--interface", default="socketcan", help="of python-can")
-    parser.add_argument("--channel", help="of the interface, such as can0")
+    parser.add_argument("--interface", default="socketcan", help="interface of python-can")
+    parser.add_argument("--channel", help="channel of the interface, such as can0")
     arguments = parser.parse_args()
     if (arguments.log is None) == (arguments.channel is None):
         parser.error("found no source or two, wanted a log or --channel")

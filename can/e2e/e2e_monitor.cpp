@@ -8,6 +8,14 @@ E2eReceiverParameters gnss_receiver_parameters(Duration cycle) {
   return {.cycle = cycle, .state = {.window = 20, .min_ok_invalid = 2}};
 }
 
+E2eFrame e2e_frame_of(const Frame& frame, const E2eProtection& protection, uint8_t length) {
+  E2eFrame checked{.right_length = frame.length == length};
+  if (!checked.right_length) return checked;
+  checked.right_crc = has_valid_crc(frame, protection);
+  checked.counter = counter_of(frame, protection.profile);
+  return checked;
+}
+
 bool E2eMonitor::accept(const E2eFrame& frame, Time received) {
   add_missing_cycles(received);
   const E2eCheck result = check(frame, received);
@@ -39,8 +47,8 @@ E2eCheck E2eMonitor::check_counter(uint8_t counter, Time received) {
   const Duration silence = counter_ ? received - in_sequence_ : Duration::zero();
   const bool silent = silence >= kSilentCycles * parameters_.cycle;
   const bool continues = steps > 0 && steps <= kMaxDeltaCounter + silence / parameters_.cycle;
-  // The allowed step grows with time. Without this condition, any counter would pass some time
-  // after the sender of the sequence has gone.
+  // The allowed step grows with time. Without this condition, any counter would be accepted some
+  // time after the sender of the sequence has stopped.
   const bool undisputed = !silent || !other_counter_;
   if (continues && undisputed) {
     counters_.lost += static_cast<uint64_t>(steps - 1);

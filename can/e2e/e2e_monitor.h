@@ -28,6 +28,9 @@ struct E2eFrame {
   std::optional<uint8_t> counter{};
 };
 
+/// Checks the protection of a frame, whose message has `length` bytes.
+E2eFrame e2e_frame_of(const Frame& frame, const E2eProtection& protection, uint8_t length);
+
 /// The receiving side of the E2E profiles (AUTOSAR_PRS_E2EProtocol). It checks CRC, length,
 /// repeated counter and MaxDeltaCounter, and synchronizes again after a wrong sequence. From these
 /// checks E2eStateMachine decides. AUTOSAR counts the calls of a periodic task, while this class
@@ -78,7 +81,7 @@ class E2eMonitor {
 
   std::optional<uint8_t> counter_;        ///< counter of the latest frame in sequence
   Time in_sequence_{};                    ///< when that frame arrived
-  std::optional<uint8_t> other_counter_;  ///< counter of a sequence that may replace it
+  std::optional<uint8_t> other_counter_;  ///< counter of another sequence, which may take over
   int other_run_ = 0;
   E2eCounters counters_;
 };

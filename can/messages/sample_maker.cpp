@@ -1,5 +1,7 @@
 #include "can/messages/sample_maker.h"
 
+#include "can/messages/message_table.h"
+
 namespace bevloc::can {
 
 GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time) {
@@ -12,6 +14,19 @@ GnssSample gnss_sample_of(const GeodeticFix& fix, GeoReference& geo, Time time) 
                     .sigma_north_m = fix.sigma_north_m};
   if (fix.heading) sample.yaw = {map_from_vehicle.yaw_rad, radians(fix.heading->sigma_deg)};
   return sample;
+}
+
+void SampleMaker::note_unknown(const Frame& frame, const BaseIds& base) {
+  const bool own_id = is_localizer_id(frame.id, base);
+  ++(own_id ? own_ids_ : foreign_frames_);
+  if (own_id) fault_times_.foreign_sender = latest_;
+}
+
+bool SampleMaker::accept(E2eMonitor& monitor, const E2eFrame& frame, bool has_odometry) {
+  const bool accepted = monitor.accept(frame, latest_);
+  if (monitor.has_second_sender()) fault_times_.foreign_sender = latest_;
+  if (monitor.state() == E2eState::kInvalid && has_odometry) note_implausible();
+  return accepted;
 }
 
 std::optional<OdometrySample> SampleMaker::odometry(const OdometryCheck::Wheels& wheels) {
@@ -32,6 +47,8 @@ GnssSample SampleMaker::gnss(const GeodeticFix& fix, Time time) {
 }
 
 void SampleMaker::add_to(VehicleInputCounters& counters) const {
+  counters.own_ids += own_ids_;
+  counters.foreign += foreign_frames_;
   counters.contradicting_wheels += odometry_check_.count(OdometryVerdict::kWheelsContradictYawRate);
   counters.odometry_jumps += odometry_check_.count(OdometryVerdict::kSpeedJump) +
                              odometry_check_.count(OdometryVerdict::kYawRateJump);

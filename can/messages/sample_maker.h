@@ -1,9 +1,11 @@
-// Makes samples from odometry and GNSS that were decoded, and remembers what is wrong with them.
+// Makes samples from decoded odometry and GNSS, and remembers when they were wrong.
 #pragma once
 
 #include <optional>
 
+#include "can/e2e/e2e_monitor.h"
 #include "can/messages/geo_reference.h"
+#include "can/messages/message.h"
 #include "can/messages/odometry_check.h"
 #include "can/messages/vehicle_decoder.h"
 
@@ -37,19 +39,25 @@ class SampleMaker {
   /// Call it first for each frame, with its time of arrival.
   void note_frame(Time received) { latest_ = received; }
   void note_implausible() { fault_times_.implausible = latest_; }
-  void note_foreign_sender() { fault_times_.foreign_sender = latest_; }
+  /// Notes a frame that has none of the vehicle's messages.
+  void note_unknown(const Frame& frame, const BaseIds& base);
+  /// Gives the latest frame to the monitor of its message, and notes what the monitor finds.
+  /// Returns whether the frame can be used.
+  bool accept(E2eMonitor& monitor, const E2eFrame& frame, bool has_odometry);
 
   /// Returns nothing if the wheels are not plausible.
   std::optional<OdometrySample> odometry(const OdometryCheck::Wheels& wheels);
   GnssSample gnss(const GeodeticFix& fix, Time time);
 
   const VehicleFaultTimes& fault_times() const { return fault_times_; }
-  /// Adds the numbers of samples that this class made or refused.
+  /// Adds what this class counted: unknown frames, and the samples that it made or refused.
   void add_to(VehicleInputCounters& counters) const;
 
  private:
   GeoReference geo_;
   OdometryCheck odometry_check_;
+  uint64_t own_ids_ = 0;
+  uint64_t foreign_frames_ = 0;
   uint64_t odometry_samples_ = 0;
   uint64_t slow_samples_ = 0;
   uint64_t gnss_samples_ = 0;

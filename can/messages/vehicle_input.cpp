@@ -21,10 +21,9 @@ E2eReceiverParameters parameters_of(const Message& message) {
 }
 
 template <size_t... I>
-std::array<E2eReceiver, sizeof...(I)> receivers_of(const auto& messages,
-                                                   std::index_sequence<I...>) {
-  return {
-      E2eReceiver(messages[I]->protection(), messages[I]->length, parameters_of(*messages[I]))...};
+std::array<E2eMonitor, sizeof...(I)> monitors_of(const auto& messages, std::index_sequence<I...>) {
+  return {E2eMonitor(highest_counter(messages[I]->protection().profile),
+                     parameters_of(*messages[I]))...};
 }
 
 /// A sigma of 0 on the bus means less than one step, because no measurement is exact.
@@ -37,7 +36,7 @@ double at_least_one_step(double sigma, const Signal& signal) {
 VehicleInput::VehicleInput(const BaseIds& base, GeodeticPosition map_origin, double rear_track_m)
     : base_(base),
       maker_(map_origin, rear_track_m, std::chrono::milliseconds(kOdometryCycleMs)),
-      receivers_(receivers_of(kInputs, std::make_index_sequence<kInputs.size()>())),
+      monitors_(monitors_of(kInputs, std::make_index_sequence<kInputs.size()>())),
       odometry_group_(window_of(kOdometryCycleMs)),
       gnss_group_(window_of(kGnssCycleMs)) {}
 
@@ -46,17 +45,12 @@ VehicleSamples VehicleInput::accept(const ReceivedFrame& received) {
   const auto input = std::ranges::find_if(
       kInputs, [&](const Message* message) { return message->id(base_) == received.frame.id; });
   if (input == kInputs.end()) {
-    const bool own_id = is_localizer_id(received.frame.id, base_);
-    ++(own_id ? counters_.own_ids : counters_.foreign);
-    if (own_id) maker_.note_foreign_sender();
+    maker_.note_unknown(received.frame, base_);
     return {};
   }
   const auto index = static_cast<size_t>(input - kInputs.begin());
-  const bool accepted = receivers_[index].accept(received);
-  if (receivers_[index].has_second_sender()) maker_.note_foreign_sender();
-  const bool invalid = receivers_[index].state() == E2eState::kInvalid;
-  if (invalid && index < kFirstGnss) maker_.note_implausible();
-  if (!accepted) return {};
+  const E2eFrame checked = e2e_frame_of(received.frame, (*input)->protection(), (*input)->length);
+  if (!maker_.accept(monitors_[index], checked, index < kFirstGnss)) return {};
 
   const auto epoch = static_cast<uint8_t>(extract_raw(received.frame, kEpoch));
   if (index < kFirstGnss) {
@@ -105,7 +99,7 @@ std::optional<GnssSample> VehicleInput::gnss_from(const EpochGroup<3>::Set& set)
 
 VehicleInputCounters VehicleInput::counters() const {
   VehicleInputCounters total = counters_;
-  for (const E2eReceiver& receiver : receivers_) total.add(receiver.counters());
+  for (const E2eMonitor& monitor : monitors_) total.add(monitor.counters());
   maker_.add_to(total);
   total.incomplete = odometry_group_.incomplete() + gnss_group_.incomplete();
   return total;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "can/e2e/e2e_receiver.h"
+#include "can/e2e/e2e_monitor.h"
 #include "can/messages/epoch_group.h"
 #include "can/messages/message_table.h"
 #include "can/messages/sample_maker.h"
@@ -14,7 +14,7 @@
 
 namespace bevloc::can {
 
-/// Uses only the frames that E2eReceiver accepts. Wheel speed and yaw rate of one epoch make an
+/// Uses only the frames that E2eMonitor accepts. Wheel speed and yaw rate of one epoch make an
 /// odometry sample. Latitude, longitude and heading of one epoch make a GNSS sample, which has no
 /// yaw if the heading is not available. One thread.
 class VehicleInput final : public VehicleDecoder {
@@ -41,7 +41,7 @@ class VehicleInput final : public VehicleDecoder {
 
   BaseIds base_;
   SampleMaker maker_;
-  std::array<E2eReceiver, kInputs.size()> receivers_;
+  std::array<E2eMonitor, kInputs.size()> monitors_;
   EpochGroup<2> odometry_group_;
   EpochGroup<3> gnss_group_;
   VehicleInputCounters counters_;

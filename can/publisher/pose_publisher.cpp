@@ -14,8 +14,8 @@ std::array<E2eSender, sizeof...(I)> solution_senders(std::index_sequence<I...>) 
   return {E2eSender(kSolutionMessages[I]->protection())...};
 }
 
-/// Calls come a little early or late. The slack selects the call that is nearest to the end of the
-/// cycle.
+/// Whether a message is due. Calls come a little early or late. The slack selects the call that is
+/// nearest to the end of the cycle.
 bool is_due(Time sent, int cycle_ms, Time now) {
   constexpr Duration kSlack = std::chrono::milliseconds(kSolutionCycleMs) / 2;
   return now - sent >= std::chrono::milliseconds(cycle_ms) - kSlack;
@@ -35,7 +35,7 @@ PosePublisher::PosePublisher(Bus& bus, const PosePublisherConfig& config)
       authentication_sender_(loc_authentication::kMessage.protection()),
       freshness_sender_(loc_freshness::kMessage.protection()) {}
 
-void PosePublisher::publish(const PoseReport& report, Time now) {
+LocalizerStatus PosePublisher::publish(const PoseReport& report, Time now) {
   const LocalizerStatus status = status_to_send(report, now);
   const SolutionFrames frames = solution_frames(report, status, geo_, config_.base_ids, now);
   if (config_.format == FrameFormat::kFd) {
@@ -46,6 +46,7 @@ void PosePublisher::publish(const PoseReport& report, Time now) {
   if (config_.sends_clock) send_clock_if_due(report.clock, now);
   if (secoc_) send_authentication(now);
   epoch_ = (epoch_ + 1) & 0x0F;
+  return status;
 }
 
 void PosePublisher::publish_classic(const SolutionFrames& frames, const LocalizerStatus& status,
@@ -110,7 +111,7 @@ void PosePublisher::send_authentication(Time now) {
   epoch_frame_count_ = 0;
 }
 
-/// LOC_Authentication does not cover this frame, so that a receiver need not know it.
+/// LOC_Authentication does not cover LOC_Clock, so that a receiver need not know LOC_Clock.
 void PosePublisher::send_clock_if_due(const ClockReport& clock, Time now) {
   if (clock_sent_at_ && !is_due(*clock_sent_at_, loc_clock::kCycleMs, now)) return;
   clock_sent_at_ = now;

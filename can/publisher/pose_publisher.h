@@ -41,7 +41,9 @@ class PosePublisher {
   /// From now on, authenticates each epoch with LOC_Authentication, and sends LOC_Freshness.
   void authenticate(SecocSender sender) { secoc_ = std::move(sender); }
 
-  void publish(const PoseReport& report, Time now);
+  /// `now` is the time of this call, which may be later than PoseReport::pose_time. Returns the
+  /// status that was sent (status_to_send()).
+  LocalizerStatus publish(const PoseReport& report, Time now);
 
   /// Returns the identifiers that a publisher of this format sends, with or without authentication
   /// and LOC_Clock.

@@ -48,10 +48,11 @@ double sigma_along(const Eigen::Matrix3d& covariance, double direction_rad) {
   return sigma_of(axis.dot(covariance.topLeftCorner<2, 2>() * axis));
 }
 
-/// An age beyond the range of the signal stays SNA, because the largest value would be too small.
-void encode_time(Frame& frame, Time capture_time, Time now) {
+/// The age is that at the time `at`. An age beyond the range of the signal stays SNA, because the
+/// largest value would be too small.
+void encode_time(Frame& frame, Time capture_time, Time at) {
   using std::chrono::microseconds;
-  const double age_ms = 1e3 * to_seconds(now - capture_time);
+  const double age_ms = to_milliseconds(at - capture_time);
   if (!is_in_range(loc_time::kCaptureAge, age_ms)) return;
   const auto capture_us = std::chrono::floor<microseconds>(capture_time.time_since_epoch()).count();
   insert_raw(frame, loc_time::kCaptureTime, capture_us & UINT32_MAX);
@@ -144,7 +145,7 @@ Frame clock_frame(const ClockReport& clock, const BaseIds& base) {
   if (clock.source == TimeSource::kFreeRunning) return frame;
   const auto offset_us = std::chrono::round<std::chrono::microseconds>(clock.utc_offset).count();
   insert_raw(frame, loc_clock::kUtcOffset, offset_us & UINT32_MAX);
-  encode_bound(frame, loc_clock::kUtcError, 1e3 * to_seconds(clock.utc_error));
+  encode_bound(frame, loc_clock::kUtcError, to_milliseconds(clock.utc_error));
   return frame;
 }
 
@@ -164,10 +165,12 @@ SolutionFrames solution_frames(const PoseReport& report, const LocalizerStatus& 
                          [&](const Message* message) { return blank_frame(*message, base); });
   auto& [time, latitude, longitude, local, attitude, velocity, deviation, correction, integrity] =
       frames;
+  const bool has_pose = claims_pose(status.state);
   if (report.capture_time && *report.capture_time <= now) {
-    encode_time(time, *report.capture_time, now);
+    // A valid pose holds at CaptureTime + CaptureAge.
+    encode_time(time, *report.capture_time, has_pose ? report.pose_time : now);
   }
-  if (claims_pose(status.state)) {
+  if (has_pose) {
     encode_pose(latitude, longitude, local, attitude, deviation, report, geo);
     encode_protection(integrity, report.protection_level);
   }

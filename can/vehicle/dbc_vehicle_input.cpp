@@ -5,16 +5,15 @@
 #include <set>
 #include <utility>
 
-#include "can/messages/message_table.h"
 #include "can/vehicle/wheel_fusion.h"
 
 namespace bevloc::can {
 namespace {
 
 constexpr int kMostCycles = 4;
-/// Several frames that come at the same interval leave a gap between two of them that is at least
-/// as long as the interval divided by their number. A sample begins after such a gap. Frames do not
-/// come exactly on time, so this share of the gap suffices.
+/// If n frames come once per interval, the longest gap between two of them is at least the interval
+/// divided by n. A sample begins after such a gap. Frames do not come exactly on time, so this
+/// share of the gap suffices.
 constexpr double kGapShare = 0.8;
 /// The smallest sigmas, because no measurement is exact. A signal with coarse steps shows a sigma
 /// of less than one step as 0.
@@ -77,18 +76,12 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
   maker_.note_frame(received.received);
   const auto message = std::ranges::find(binding_.messages, received.frame.id, &BoundMessage::id);
   if (message == binding_.messages.end()) {
-    const bool own_id = is_localizer_id(received.frame.id, base_);
-    ++(own_id ? counters_.own_ids : counters_.foreign);
-    if (own_id) maker_.note_foreign_sender();
+    maker_.note_unknown(received.frame, base_);
     return {};
   }
   const auto index = static_cast<size_t>(message - binding_.messages.begin());
-  E2eMonitor& monitor = monitors_[index];
-  const bool accepted = monitor.accept(
-      e2e_frame_of(received.frame, message->protection, message->length), received.received);
-  if (monitor.has_second_sender()) maker_.note_foreign_sender();
-  if (monitor.state() == E2eState::kInvalid && message->has_odometry) maker_.note_implausible();
-  if (!accepted) return {};
+  const E2eFrame checked = e2e_frame_of(received.frame, message->protection, message->length);
+  if (!maker_.accept(monitors_[index], checked, message->has_odometry)) return {};
   const bool replaced_unused = store(index, received);
   VehicleSamples samples;
   const bool has_odometry = all_new(odometry_signals_) &&
@@ -102,7 +95,7 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
   return samples;
 }
 
-/// Whether a position is new, and there is no heading to wait for.
+/// Whether there is a new position, and no heading must be waited for.
 bool DbcVehicleInput::is_fix_complete(Time now) {
   if (position_signals_.empty() || !all_new(position_signals_)) return false;
   const bool heading_stopped =
@@ -187,7 +180,8 @@ Duration DbcVehicleInput::cycle_of(size_t signal) const {
   return binding_.messages[binding_.signals[signal].message].cycle;
 }
 
-/// How often the signal comes. A multiplexed one comes more rarely than its message.
+/// The time between two values of the signal. A multiplexed signal comes less often than its
+/// message.
 Duration DbcVehicleInput::interval_of(size_t signal) const {
   return std::max(cycle_of(signal), slots_[signal].interval);
 }
@@ -221,7 +215,7 @@ std::optional<OdometrySample> DbcVehicleInput::odometry(Time now) {
     return std::nullopt;
   }
   double yaw_rate_radps = slots_[turning.signal].value;
-  // A signal may have a sign although there is a condition. Then both say the same.
+  // A signal with a condition may have a sign of its own. abs() makes a second minus harmless.
   if (*negative) yaw_rate_radps = -std::abs(yaw_rate_radps);
   if (turning.positive_right) yaw_rate_radps = -yaw_rate_radps;
   WheelFusion fusion(rear_track_m_, moving.wheelbase_m, yaw_rate_radps);

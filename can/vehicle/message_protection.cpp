@@ -5,7 +5,6 @@
 #include "can/e2e/crc8.h"
 #include "can/e2e/e2e_p02.h"
 #include "can/e2e/e2e_p05.h"
-#include "can/e2e/e2e_receiver.h"
 
 namespace bevloc::can {
 namespace {

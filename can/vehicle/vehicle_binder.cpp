@@ -81,8 +81,9 @@ bool has_sign(const DbcSignal& signal, Quantity quantity, double factor) {
   return negative < 0.0 && lowest_of(signal) * factor <= negative;
 }
 
-/// Refuses what is probably a wrong unit or a wrong signal. A quantity whose sign matters must
-/// reach the positive value, because a magnitude has no other ones.
+/// Refuses what is probably a wrong unit or a wrong signal. A quantity with a sign must reach
+/// Sanity::reaches on the positive side, because its signal may be a magnitude. Other quantities
+/// may reach it on either side.
 Bound<void> check_range(const DbcSignal& signal, Quantity quantity, double factor) {
   const Sanity sanity = sanity_of(quantity);
   const double highest = highest_of(signal);
@@ -204,7 +205,7 @@ size_t VehicleBinder::bind_message(const DbcMessage& message) {
   binding_.messages.push_back({.name = message.name,
                                .id = message.id,
                                .length = message.length,
-                               .cycle = from_seconds(1e-3 * message.cycle_ms().value_or(0.0)),
+                               .cycle = from_milliseconds(message.cycle_ms().value_or(0.0)),
                                .protection = {}});
   return binding_.messages.size() - 1;
 }

@@ -162,7 +162,7 @@ Bound<void> VehicleBinder::protect(const ProtectionRequest& request) {
     return refusal(fmt::format("a second entry for {}", *name), "one for each message");
   }
   if (auto good = check_data_ids(request); !good) return good;
-  if (request.cycle_ms) bound->cycle = from_seconds(1e-3 * *request.cycle_ms);
+  if (request.cycle_ms) bound->cycle = from_milliseconds(*request.cycle_ms);
   MessageProtection& protection = bound->protection;
   protection.checksum = request.kind.value_or(ChecksumKind::kNone);
   protection.data_ids = request.data_ids;
@@ -212,16 +212,18 @@ void VehicleBinder::mark_odometry() {
 Bound<void> VehicleBinder::check_places(const BoundMessage& message) const {
   const FrameBits checksum = checksum_bits(message.protection);
   const FrameBits counter = counter_bits(message.protection);
-  if (checksum.overlaps(counter)) return refusal("its counter in its checksum", "each by itself");
+  if (checksum.overlaps(counter)) return refusal("its counter in its checksum", "separate bits");
   for (const BoundSignal& signal : binding_.signals) {
     const bool is_here = binding_.messages[signal.message].name == message.name;
     if (!is_here) continue;
     const FrameBits bits = bits_of(signal);
     if (bits.overlaps(checksum)) {
-      return refusal(fmt::format("{} in the bits of its checksum", signal.name), "each by itself");
+      return refusal(fmt::format("{} in the bits of its checksum", signal.name),
+                     "separate bits for each");
     }
     if (bits.overlaps(counter)) {
-      return refusal(fmt::format("{} in the bits of its counter", signal.name), "each by itself");
+      return refusal(fmt::format("{} in the bits of its counter", signal.name),
+                     "separate bits for each");
     }
   }
   return {};
@@ -246,7 +248,7 @@ Bound<void> VehicleBinder::check_values(const BoundMessage& message) const {
       others.add(values[j]->layout);
       if (!bits.overlaps(others) || !are_together(*values[i], *values[j])) continue;
       return refusal(fmt::format("{} in the bits of {}", values[i]->name, values[j]->name),
-                     "each value by itself");
+                     "separate bits for each value");
     }
   }
   return {};
@@ -273,7 +275,7 @@ Bound<void> VehicleBinder::finish_message(BoundMessage& message) {
   }
   if (auto good = check_places(message); !good) return good;
   if (auto good = check_values(message); !good) return good;
-  const double cycle_ms = 1e3 * to_seconds(message.cycle);
+  const double cycle_ms = to_milliseconds(message.cycle);
   if (cycle_ms == 0.0) {
     return refusal("no cycle time (attribute GenMsgCycleTime)",
                    "one, or cycle_ms for this message in protection");

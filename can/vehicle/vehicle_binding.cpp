@@ -36,7 +36,7 @@ bool needs_fd(const VehicleBinding& binding) {
 }
 
 Duration odometry_interval(const VehicleBinding& binding) {
-  const Duration slowest = from_seconds(1e-3 * kSlowestOdometry_ms);
+  const Duration slowest = from_milliseconds(kSlowestOdometry_ms);
   Duration interval = std::chrono::milliseconds(kOdometryCycleMs);
   const auto add = [&](size_t index) {
     const BoundSignal& signal = binding.signals[index];

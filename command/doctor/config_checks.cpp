@@ -77,7 +77,7 @@ Findings check_v4l2_cameras(const Machine& machine, const Config& config) {
                                            fmt::format("{} ({})", id, node->filename().string()),
                                            camera_access())
                             : Finding{Level::kProblem, part, node.error().message,
-                                      "the device of cameras.ids", "ls -l /dev/v4l/by-id"});
+                                      "the camera that cameras.ids names", "ls -l /dev/v4l/by-id"});
   }
   return findings;
 }
@@ -96,7 +96,7 @@ Findings check_libcamera_cameras(const Machine& machine, const Config& config) {
         {Level::kProblem, part,
          known ? fmt::format("found no camera \"{}\", only: {}", id, fmt::join(*known, ", "))
                : known.error().message,
-         "the camera of cameras.ids", "cam -l"});
+         "the camera that cameras.ids names", "cam -l"});
   }
   return findings;
 }
@@ -128,8 +128,8 @@ Finding check_gpio_access(const Machine& machine, const Config& config) {
   const auto usable = std::ranges::find(findings, Level::kOk, &Finding::level);
   if (usable != findings.end()) return *usable;
   if (!findings.empty()) return findings.front();
-  return {Level::kProblem, "gpio", "found no /dev/gpiochip*", "the chip of the section gpio",
-          "gpiodetect"};
+  return {Level::kProblem, "gpio", "found no /dev/gpiochip*",
+          "the chip that the section gpio names", "gpiodetect"};
 }
 
 Findings check_gpio_lines(const Machine& machine, const Config& config) {
@@ -143,7 +143,7 @@ Findings check_gpio_lines(const Machine& machine, const Config& config) {
     findings.push_back(
         place ? ok("gpio", fmt::format("{} (/dev/{})", to_string(line), chips[place->chip].name))
               : Finding{Level::kProblem, "gpio", place.error().message,
-                        "the line of the section gpio", "gpioinfo"});
+                        "the line that the section gpio names", "gpioinfo"});
   }
   return findings;
 }
@@ -180,7 +180,7 @@ std::optional<CanLink> parse_link(const std::string& text) {
 }
 
 /// Returns the command that starts an interface. The kernel keeps the bit rate of an interface that
-/// is down. A guessed one would disturb the bus.
+/// is down. If there is none, the user must give it, because a wrong bit rate disturbs the bus.
 std::string start_command(const std::string& name, const CanLink& link) {
   const bool is_ready = link.is_virtual || link.bit_rate > 0;
   return fmt::format("sudo ip link set {} up{}", name,
@@ -191,8 +191,8 @@ std::string start_command(const std::string& name, const CanLink& link) {
 
 Findings judge_link(const std::string& name, const CanLink& link) {
   if (!link.up) {
-    return {
-        {Level::kProblem, name, "found the interface down", "it up", start_command(name, link)}};
+    return {{Level::kProblem, name, "found an interface that is down", "an interface that is up",
+             start_command(name, link)}};
   }
   if (link.is_virtual) return {ok(name, "up, virtual: no other machine hears it")};
   Findings findings;
@@ -293,7 +293,8 @@ Findings check_can_interface(const Machine& machine, const Config& config) {
   }
   if (!machine.exists("/sys/class/net/" + name)) {
     const bool is_virtual = name.starts_with("vcan");
-    findings.push_back({Level::kProblem, name, "found no such interface", "one of can.interface",
+    findings.push_back({Level::kProblem, name, "found no such interface",
+                        "the interface of can.interface",
                         is_virtual ? fmt::format("sudo ip link add {0} type vcan && sudo ip link "
                                                  "set {0} up",
                                                  name)

@@ -21,11 +21,12 @@ Findings examine(const Machine& machine, const std::filesystem::path& config_fil
                  const firmware::SimulationReader* simulation) {
   Findings all;
   if (config_file.empty()) {
-    all.push_back({Level::kWarning, "configuration", "found none",
-                   "one, so that devices and files can be looked at", "bevloc init"});
+    all.push_back({Level::kWarning, "configuration", "found no configuration",
+                   "one, so that devices and files can be checked", "bevloc init"});
   } else if (const auto config = firmware::load_config(config_file, simulation); !config) {
     all.push_back(
-        {Level::kProblem, "configuration", config.error().message, "one without mistakes",
+        {Level::kProblem, "configuration", config.error().message,
+         "a configuration without mistakes",
          fmt::format("bevlocd --config {} --check-config", shell_word(config_file.string()))});
   } else {
     all.push_back(ok("configuration", config_file.string()));

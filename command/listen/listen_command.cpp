@@ -58,12 +58,13 @@ void ListenCommand::declare(CLI::App& app) {
   app_->add_flag("--bad", only_bad_,
                  "Print only frames that fail the end-to-end check or follow lost ones");
   auto* quiet = app_->add_flag("--quiet", quiet_, "Print the totals only");
-  app_->add_flag("--json", json_,
-                 "Print one JSON object a frame and no totals, or with --quiet one of the totals");
-  app_->add_option("--count", count_, "End after so many printed frames")
+  app_->add_flag(
+      "--json", json_,
+      "Print one JSON object per frame and no totals; with --quiet, one object with the totals");
+  app_->add_option("--count", count_, "End after this number of printed frames")
       ->check(whole_number())
       ->excludes(quiet);
-  app_->add_option("--duration", duration_s_, "End after so many seconds")
+  app_->add_option("--duration", duration_s_, "End after this number of seconds")
       ->check(number_between(0.001, 1e9));
   const CLI::Range base_range(uint32_t{can::BaseIds::kFirst}, uint32_t{can::BaseIds::kLast});
   app_->add_option("--localizer-base", base_.localizer, "First identifier of the LOC_ messages")

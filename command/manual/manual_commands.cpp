@@ -28,7 +28,7 @@ void ManualCommand::declare(CLI::App& app) {
   app_ = &app;
   auto* manual =
       app.add_subcommand("manual", "Write the manual pages bevloc.1, bevlocd.8 and bevloc.yaml.5");
-  manual->add_option("--out", folder_, "Folder that they are written to")
+  manual->add_option("--out", folder_, "Folder for the pages")
       ->check(CLI::ExistingDirectory)
       ->capture_default_str();
   manual->footer("Examples:\n  bevloc manual --out . && man ./bevloc.1");

@@ -61,8 +61,9 @@ std::string rule_for(const fs::path& sysfs, const std::string& chip, const std::
   const std::string node = others.empty() ? "" : tree_node_of(sysfs, chip);
   std::string rule;
   if (!others.empty() && node.empty()) {
-    rule = fmt::format("# Also gives the group {}: nothing tells them from {}.\n",
-                       fmt::join(others, ", "), chip);
+    rule = fmt::format(
+        "# The next rule also opens {} to the group: no attribute tells them from {}.\n",
+        fmt::join(others, ", "), chip);
   }
   return rule + fmt::format(
                     "SUBSYSTEM==\"gpio\", KERNEL==\"gpiochip*\", KERNELS==\"{}\", {}"

@@ -8,10 +8,10 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <unistd.h>
 #include <zstd.h>
 
 #include "common/crc32.h"
+#include "common/file_descriptor.h"
 #include "common/mcap/bytes.h"
 
 namespace bevloc::mcap {
@@ -70,13 +70,13 @@ struct Reader::Mapping {
 };
 
 Result<Reader> Reader::open(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat status {};
-  const bool readable = file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+  const bool readable =
+      file.get() >= 0 && fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode);
   const auto size = static_cast<size_t>(std::max<off_t>(status.st_size, 0));
   void* mapped = MAP_FAILED;
-  if (readable && size > 0) mapped = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
-  if (file >= 0) close(file);
+  if (readable && size > 0) mapped = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
   if (mapped == MAP_FAILED) {
     return fail("{}: found no readable file, wanted an MCAP recording", path.string());
   }
@@ -251,7 +251,8 @@ Result<Chunk> Reader::read_chunk(size_t index) const {
   const uint64_t offset = chunks_[index].offset;
   const auto record = record_at(bytes_, offset);
   if (!record || record->opcode != Opcode::kChunk) {
-    return fail("{}: offset {}: found no chunk, wanted the one of the index", name_, offset);
+    return fail("{}: offset {}: found no chunk, wanted the chunk that the index lists here", name_,
+                offset);
   }
   auto unpacked = unpack(record->content, offset);
   if (!unpacked) return tl::unexpected(unpacked.error());

@@ -21,6 +21,7 @@ namespace {
 constexpr Duration kChunkSpan = std::chrono::milliseconds(500);
 constexpr size_t kChunk_bytes = size_t{4} << 20U;
 constexpr int kZstdLevel = 1;
+constexpr std::string_view kEncoding = "protobuf";  // of schemas and messages
 
 void append_record(std::string& bytes, Opcode opcode, std::string_view content) {
   ByteWriter(bytes)
@@ -32,12 +33,12 @@ void append_record(std::string& bytes, Opcode opcode, std::string_view content) 
 }  // namespace
 
 Result<std::unique_ptr<Writer>> Writer::create(const std::filesystem::path& path) {
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (file < 0) {
+  FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+  if (file.get() < 0) {
     return fail("{}: cannot create this file ({}), wanted a new recording", path.string(),
                 std::strerror(errno));
   }
-  auto writer = std::unique_ptr<Writer>(new Writer(file, path));
+  auto writer = std::unique_ptr<Writer>(new Writer(std::move(file), path));
   std::string header;
   ByteWriter(header).text("").text(fmt::format("bevloc {}", version()));
   if (Status status = writer->put_bytes(kMagic); !status) return tl::unexpected(status.error());
@@ -47,19 +48,18 @@ Result<std::unique_ptr<Writer>> Writer::create(const std::filesystem::path& path
   return writer;
 }
 
-Writer::Writer(int file, std::filesystem::path path)
-    : file_(file), path_(std::move(path)), compressor_(ZSTD_createCCtx()) {
+Writer::Writer(FileDescriptor file, std::filesystem::path path)
+    : file_(std::move(file)), path_(std::move(path)), compressor_(ZSTD_createCCtx()) {
   records_.reserve(kChunk_bytes + kChunk_bytes / 4);
 }
 
 Writer::~Writer() {
   ZSTD_freeCCtx(compressor_);
-  close(file_);
 }
 
 Status Writer::put_bytes(std::string_view bytes) {
   while (state_ && !bytes.empty()) {
-    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+    const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
       state_ = fail("{}: cannot write to this file ({}), wanted room and a healthy disk",
@@ -81,20 +81,19 @@ Status Writer::put(Opcode opcode, std::string_view content) {
   return put_bytes(content);
 }
 
-Result<uint16_t> Writer::add_schema(std::string name, std::string encoding, std::string data) {
+Result<uint16_t> Writer::add_schema(std::string_view name, std::string_view data) {
   const auto id = static_cast<uint16_t>(schemas_.size() + 1);
   std::string content;
-  ByteWriter(content).number(id).text(name).text(encoding).text(data);
+  ByteWriter(content).number(id).text(name).text(kEncoding).text(data);
   schemas_.push_back(content);
   if (Status status = put(Opcode::kSchema, content); !status) return tl::unexpected(status.error());
   return id;
 }
 
-Result<uint16_t> Writer::add_channel(uint16_t schema_id, std::string topic,
-                                     std::string message_encoding) {
+Result<uint16_t> Writer::add_channel(uint16_t schema_id, std::string_view topic) {
   const auto id = static_cast<uint16_t>(channels_.size() + 1);
   std::string content;
-  ByteWriter(content).number(id).number(schema_id).text(topic).text(message_encoding).texts({});
+  ByteWriter(content).number(id).number(schema_id).text(topic).text(kEncoding).texts({});
   channels_.push_back(content);
   if (Status status = put(Opcode::kChannel, content); !status) {
     return tl::unexpected(status.error());
@@ -206,9 +205,9 @@ Status Writer::write_index(ChunkIndex& chunk) {
 
 Status Writer::flush() {
   if (Status closed = close_chunk(); !closed) return closed;
-  if (fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) {
-    state_ =
-        fail("{}: the disk refuses to keep this file ({})", path_.string(), std::strerror(errno));
+  if (fdatasync(file_.get()) != 0 && errno != EINVAL && errno != EROFS) {
+    state_ = fail("{}: cannot write this file to the disk ({}), wanted a healthy disk",
+                  path_.string(), std::strerror(errno));
   }
   return state_;
 }

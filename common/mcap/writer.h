@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/file_descriptor.h"
 #include "common/mcap/format.h"
 #include "common/result.h"
 
@@ -23,13 +24,11 @@ class Writer {
   /// Creates the file, which must not exist.
   static Result<std::unique_ptr<Writer>> create(const std::filesystem::path& path);
   ~Writer();
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
 
-  /// Returns the id of the schema.
-  Result<uint16_t> add_schema(std::string name, std::string encoding, std::string data);
-  /// Returns the id of the channel.
-  Result<uint16_t> add_channel(uint16_t schema_id, std::string topic, std::string message_encoding);
+  /// Returns the id of the schema. `data` is a FileDescriptorSet of protobuf.
+  Result<uint16_t> add_schema(std::string_view name, std::string_view data);
+  /// Returns the id of the channel, whose messages are protobuf.
+  Result<uint16_t> add_channel(uint16_t schema_id, std::string_view topic);
   Status add_metadata(const Metadata& metadata);
   Status add_attachment(const Attachment& attachment);
 
@@ -55,7 +54,7 @@ class Writer {
     uint64_t offset = 0;
   };
 
-  Writer(int file, std::filesystem::path path);
+  Writer(FileDescriptor file, std::filesystem::path path);
   Status put(Opcode opcode, std::string_view content);
   Status put_bytes(std::string_view bytes);
   Status close_chunk();
@@ -64,7 +63,7 @@ class Writer {
   void append_indices(std::string& summary) const;
   std::string statistics() const;
 
-  const int file_;
+  const FileDescriptor file_;
   const std::filesystem::path path_;
   ZSTD_CCtx_s* const compressor_;
   Status state_;

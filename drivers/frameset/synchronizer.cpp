@@ -67,7 +67,8 @@ FrameFate FramesetSynchronizer::judge(const CameraQueue& camera, Time time, Time
 std::optional<Frameset> FramesetSynchronizer::poll(Time now) {
   while (const std::optional<Time> opening = opening_time()) {
     const CameraMask waited_for = blockers();
-    if (waited_for.any() && now < *opening + config_.wait) return std::nullopt;
+    const bool waits = now < *opening + config_.wait && !any_queue_full();
+    if (waited_for.any() && waits) return std::nullopt;
     const CameraMask found = members(*opening);
     closed_until_ = *opening + config_.tolerance;
     splits_.add(found);
@@ -111,6 +112,11 @@ std::optional<Time> FramesetSynchronizer::opening_time() const {
     earliest = std::min(earliest.value_or(Time::max()), camera.frames.front().time);
   }
   return earliest;
+}
+
+bool FramesetSynchronizer::any_queue_full() const {
+  return std::ranges::any_of(cameras_,
+                             [](const CameraQueue& camera) { return camera.frames.full(); });
 }
 
 CameraMask FramesetSynchronizer::members(Time opening) const {

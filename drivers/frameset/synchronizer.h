@@ -16,7 +16,8 @@ namespace bevloc::drivers {
 struct SynchronizerConfig {
   /// Frames that are further apart do not belong to one frameset.
   Duration tolerance = std::chrono::milliseconds(2);
-  /// How long a frameset waits for missing cameras, from the start of its earliest exposure.
+  /// How long a frameset waits for missing cameras, from the start of its earliest exposure. The
+  /// wait ends earlier when the queue of any camera is full.
   Duration wait = std::chrono::milliseconds(60);
   /// A frameset with fewer cameras than this is dropped.
   int min_cameras = 3;
@@ -54,10 +55,11 @@ struct SynchronizerCounters {
 ///
 /// The earliest waiting frame opens a frameset. The earliest frame of each camera belongs to it if
 /// it is within the tolerance. The frameset is emitted as soon as every camera has a frame in it or
-/// a later frame, or when the wait is over. A camera that was missing from kPatience framesets in a
-/// row is not waited for until it delivers a frame again. Only frames that may belong to a frameset
-/// (kAccepted or kLate) count as delivered, so that no frameset waits for a camera whose clock is
-/// wrong.
+/// a later frame, or when the wait is over, or when the queue of any camera is full: otherwise the
+/// next frames would replace the frames that wait, and the wait would never end. A camera that was
+/// missing from kPatience framesets in a row is not waited for until it delivers a frame again.
+/// Only frames that may belong to a frameset (kAccepted or kLate) count as delivered, so that no
+/// frameset waits for a camera whose clock is wrong.
 ///
 /// Framesets are emitted in the order of time, and no frame is emitted twice. Allocates in its
 /// constructor only. One thread.
@@ -81,7 +83,8 @@ class FramesetSynchronizer {
   /// arrive later are late.
   void forget_until(Time time);
 
-  /// Returns the time at which the open frameset stops waiting, or nothing if no frame waits.
+  /// Returns the time at which the open frameset stops waiting if no queue fills before, or nothing
+  /// if no frame waits.
   std::optional<Time> deadline() const;
 
   /// Returns the cameras for which the open frameset waits, or none if no frame waits.
@@ -106,6 +109,7 @@ class FramesetSynchronizer {
 
   FrameFate judge(const CameraQueue& camera, Time time, Time now) const;
   std::optional<Time> opening_time() const;
+  bool any_queue_full() const;
   CameraMask members(Time opening) const;
   Frameset emit(Time opening, CameraMask found, CameraMask waited_for);
   void discard(CameraMask found);

@@ -7,7 +7,6 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 namespace bevloc::drivers {
 namespace {
@@ -21,8 +20,8 @@ bool becomes_ready(int socket, short events, Duration timeout) {
   return poll(&ready, socket < 0 ? 0 : 1, static_cast<int>(wait.count())) == 1;
 }
 
-/// Returns a socket that is being connected, or -errno if that is impossible.
-int connecting_socket(const GpsdAddress& address) {
+/// Makes a socket that is being connected. Returns 0 or an errno.
+int make_connecting(const GpsdAddress& address, FileDescriptor& made) {
   sockaddr_storage target{};
   socklen_t size = 0;
   auto& four = reinterpret_cast<sockaddr_in&>(target);
@@ -36,15 +35,12 @@ int connecting_socket(const GpsdAddress& address) {
     six.sin6_port = htons(address.port);
     size = sizeof(six);
   } else {
-    return -EINVAL;
+    return EINVAL;
   }
-  const int made = socket(target.ss_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (made < 0) return -errno;
-  if (::connect(made, reinterpret_cast<const sockaddr*>(&target), size) == 0) return made;
-  const int error = errno;
-  if (error == EINPROGRESS) return made;
-  close(made);
-  return -error;
+  made.reset(socket(target.ss_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (made.get() < 0) return errno;
+  if (::connect(made.get(), reinterpret_cast<const sockaddr*>(&target), size) == 0) return 0;
+  return errno == EINPROGRESS ? 0 : errno;
 }
 
 /// Asks for reports on a socket that is connected. Returns 0 or an errno.
@@ -67,10 +63,6 @@ std::string watch_command(const GpsdAddress& address) {
 
 GpsdClient::GpsdClient(const GpsdAddress& address) : address_(address), pause_(kFirstPause) {}
 
-GpsdClient::~GpsdClient() {
-  if (socket_ >= 0) close(socket_);
-}
-
 void GpsdClient::wait(Time now, Duration timeout) {
   if (state_ == State::kClosed && now >= next_try_) begin_connecting(now);
   switch (state_) {
@@ -87,12 +79,12 @@ void GpsdClient::wait(Time now, Duration timeout) {
 }
 
 void GpsdClient::begin_connecting(Time now) {
-  socket_ = connecting_socket(address_);
+  const int error = make_connecting(address_, socket_);
   since_ = now;
-  if (socket_ >= 0) {
+  if (error == 0) {
     state_ = State::kConnecting;
   } else {
-    note_failure(now, -socket_);
+    note_failure(now, error);
   }
 }
 
@@ -103,9 +95,9 @@ void GpsdClient::note_failure(Time now, int error) {
 }
 
 void GpsdClient::finish_connecting(Time now, Duration timeout) {
-  const bool ready = becomes_ready(socket_, POLLOUT, timeout);
+  const bool ready = becomes_ready(socket_.get(), POLLOUT, timeout);
   if (!ready && now - since_ < kConnectPatience) return;
-  const int error = ready ? ask_for_reports(socket_, watch_command(address_)) : ETIMEDOUT;
+  const int error = ready ? ask_for_reports(socket_.get(), watch_command(address_)) : ETIMEDOUT;
   if (error == 0) {
     state_ = State::kConnected;
     since_ = now;
@@ -116,8 +108,7 @@ void GpsdClient::finish_connecting(Time now, Duration timeout) {
 }
 
 void GpsdClient::close_socket(Time now) {
-  if (socket_ >= 0) close(socket_);
-  socket_ = -1;
+  socket_.reset();
   state_ = State::kClosed;
   received_.clear();
   skips_line_ = false;
@@ -126,14 +117,14 @@ void GpsdClient::close_socket(Time now) {
 }
 
 void GpsdClient::receive(Time now, Duration timeout) {
-  if (!becomes_ready(socket_, POLLIN, timeout)) {
+  if (!becomes_ready(socket_.get(), POLLIN, timeout)) {
     if (now - since_ < kSilence) return;
     ++counters_.silent;
     close_socket(now);
     return;
   }
   std::array<char, 4096> bytes{};
-  const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
+  const ssize_t count = recv(socket_.get(), bytes.data(), bytes.size(), 0);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (count <= 0) {
     close_socket(now);

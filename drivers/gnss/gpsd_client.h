@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/file_descriptor.h"
 #include "common/time.h"
 #include "drivers/gnss/gpsd_report.h"
 
@@ -40,9 +41,6 @@ class GpsdClient {
   static constexpr size_t kLongestLine = 16'384;
 
   explicit GpsdClient(const GpsdAddress& address);
-  ~GpsdClient();
-  GpsdClient(const GpsdClient&) = delete;
-  GpsdClient& operator=(const GpsdClient&) = delete;
 
   /// Waits for bytes, at most `timeout` of real time, and takes those that are there. Connects if
   /// there is no connection and the next attempt is due at `now`.
@@ -65,7 +63,7 @@ class GpsdClient {
 
   const GpsdAddress address_;
   State state_ = State::kClosed;
-  int socket_ = -1;
+  FileDescriptor socket_;
   Time next_try_ = Time::min();
   Time since_{};  ///< when the attempt began, or the latest bytes came
   Duration pause_;

@@ -53,7 +53,7 @@ Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
   const Duration scene_time = drive_time(delivery.scene_time);
   const Duration true_time = schedule_.true_exposure_start(delivery) - config_.timing.drive_start;
   const double time_s = to_seconds(true_time);
-  // What happens to the optics belongs to the camera, wherever its cable is plugged in.
+  // A fault of the optics stays with its camera, even if the cable is plugged into another port.
   const int source =
       sim::source_camera(config_.camera, config_.faults->active(sim::FaultInput::kCamera, time_s));
   const std::vector<sim::Fault> active = config_.faults->active_on_camera(source, time_s);
@@ -67,7 +67,7 @@ Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
   for (const sim::Fault& fault : active) {
     if (fault.kind == sim::FaultKind::kCameraDirty) cover_lens(source, fault.amounts.share, image);
   }
-  const uint64_t camera_seed = sim::seed_for(0, kCameraNames[source]);
+  const uint64_t camera_seed = sim::seed_for(config_.fault_seed, kCameraNames[source]);
   sim::disturb_light(image, active,
                      sim::mix_seed(camera_seed ^ static_cast<uint64_t>(scene_time.count())));
   return {};
@@ -76,7 +76,8 @@ Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
 void MockCamera::cover_lens(int source, double share, RgbImage& image) {
   if (!dirt_ || dirt_->share() != share || dirty_camera_ != source) {
     dirty_camera_ = source;
-    dirt_.emplace(image.width, image.height, share, sim::seed_for(0, kCameraNames[source]));
+    dirt_.emplace(image.width, image.height, share,
+                  sim::seed_for(config_.fault_seed, kCameraNames[source]));
   }
   dirt_->cover(image);
 }

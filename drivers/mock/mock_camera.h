@@ -1,6 +1,7 @@
 // A mock camera that shows a simulated world.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -21,6 +22,7 @@ struct MockCameraConfig {
   CameraTiming timing;
   int buffers = kDefaultFrameBuffers;
   std::shared_ptr<const sim::FaultBoard> faults;  ///< null without faults
+  uint64_t fault_seed = 0;  ///< of the dirt, and of the noise of dark and blinded pictures
 };
 
 /// With a real clock, images are drawn ahead of time in the thread that calls next_frame().

@@ -85,10 +85,10 @@ Delivery MockSchedule::delivery_of(uint64_t index) const {
   const Time start = exposure_start(index);
   Delivery delivery{index - first_index_, start, scene_time(index), start + timing_.readout};
   if (const auto late = active(sim::FaultKind::kCameraLate, index)) {
-    delivery.due += from_seconds(1e-3 * late->amounts.delay_ms);
+    delivery.due += from_milliseconds(late->amounts.delay_ms);
   }
   if (const auto shift = active(sim::FaultKind::kCameraTimeShift, index)) {
-    delivery.exposure_start += from_seconds(1e-3 * shift->amounts.shift_ms);
+    delivery.exposure_start += from_milliseconds(shift->amounts.shift_ms);
   }
   delivery.lost = active(sim::FaultKind::kCameraDead, index).has_value();
   return delivery;

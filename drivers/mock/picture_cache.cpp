@@ -15,10 +15,7 @@ bool PictureCache::find(uint64_t key, RgbImage& image) {
 
 void PictureCache::keep(uint64_t key, const RgbImage& image) {
   const std::lock_guard lock(mutex_);
-  if (counters_.bytes + image.pixels.size() > max_bytes_) {
-    ++counters_.no_room;
-    return;
-  }
+  if (counters_.bytes + image.pixels.size() > max_bytes_) return;
   const auto [kept, is_new] = pictures_.try_emplace(key, image.pixels);
   if (!is_new) return;
   ++counters_.kept;

@@ -35,7 +35,6 @@ class PictureCache {
   struct Counters {
     uint64_t found = 0;
     uint64_t kept = 0;
-    uint64_t no_room = 0;
     size_t bytes = 0;  ///< size of the pictures that are kept now
   };
   Counters counters() const;

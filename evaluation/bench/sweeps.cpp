@@ -16,6 +16,7 @@
 #include "evaluation/bench/stage_work.h"
 #include "evaluation/bench/tiled_map.h"
 #include "evaluation/bench/timing.h"
+#include "firmware/config/localizer_options.h"
 #include "firmware/runtime/appliance.h"
 #include "pipeline/map/rasterizer.h"
 
@@ -31,7 +32,7 @@ Result<SweepResult> sweep_cameras(const evaluation::DriveConfig& config,
   const auto scene = make_scene(config);
   if (!scene) return tl::unexpected(scene.error());
   const MapIndex index(scene->map);
-  LocalizerOptions localizer_options = firmware::localizer_options(config);
+  LocalizerOptions localizer_options = firmware::localizer_options_of(config);
   localizer_options.network.threads = options.threads;
   const auto localizer =
       Localizer::create(scene->rig, index, config.model_file.string(), localizer_options);
@@ -199,9 +200,9 @@ Result<SweepResult> sweep_map(const evaluation::DriveConfig& config, const Sweep
   if (!scene) return tl::unexpected(scene.error());
   SweepResult sweep{
       "map",
-      "Crop, and crop with raster, around one place of maps of other lengths, made from parts and "
-      "copies\nof the configuration's map. road_km is the length of road; map_mib includes the "
-      "index.",
+      "The crop, and the crop with the raster, around one place. The maps have other lengths; they "
+      "are made from\nparts and copies of the configuration's map. road_km is the length of road; "
+      "map_mib includes the index.",
       {"road_km", "elements", "crop_ms", "raster_ms", "raster_p99_ms", "index_s", "map_mib"},
       {}};
   for (double km = 1.0; km <= kLongestMap_km; km *= 10.0) {

@@ -1,6 +1,7 @@
 #include "evaluation/bench/whole_frame.h"
 
 #include "evaluation/bench/allocation_count.h"
+#include "firmware/config/localizer_options.h"
 #include "firmware/runtime/appliance.h"
 #include "firmware/runtime/identity.h"
 
@@ -24,7 +25,7 @@ void clear(BoundedQueue<Item>& queue) {
 Result<std::unique_ptr<WholeFrame>> WholeFrame::create(const firmware::Config& config,
                                                        const Rig& rig, const HdMap& map,
                                                        const MapIndex& index, int threads) {
-  LocalizerOptions options = firmware::localizer_options(config);
+  LocalizerOptions options = firmware::localizer_options_of(config);
   options.network.threads = threads;
   auto localizer = Localizer::create(rig, index, config.model_file.string(), options);
   if (!localizer) return tl::unexpected(localizer.error());
@@ -65,7 +66,7 @@ bool WholeFrame::settle(const Place& place) {
 
 FrameRun WholeFrame::run(const FramesetImages& images) {
   exposure_ = clock_.now();
-  estimation_->tick(exposure_);
+  estimation_->tick(clock_);
   drive_until(exposure_ + kImageDelay);
   take_sent();
   ++sequence_;
@@ -81,7 +82,7 @@ FrameRun WholeFrame::run(const FramesetImages& images) {
     queues_.frames.push(std::move(frame));
   }
   vision_->step(clock_, Duration::zero());
-  estimation_->tick(clock_.now());
+  estimation_->tick(clock_);
   done.time = machine_clock_.now() - start;
   done.allocations = allocation_count() - allocated_before;
   done.can_frames = take_sent();
@@ -97,7 +98,7 @@ void WholeFrame::drive_until(Time time) {
     const Time now = clock_.now();
     queues_.samples.push(vehicle_.odometry(now));
     if ((now - Time{}) % kFramePeriod == Duration::zero()) queues_.samples.push(vehicle_.gnss(now));
-    if (now < time) estimation_->tick(now);
+    if (now < time) estimation_->tick(clock_);
   }
 }
 

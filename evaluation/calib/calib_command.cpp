@@ -57,9 +57,9 @@ void print_time_offsets(const RigRefinement& refinement) {
     const double offset_s = refinement.cameras[c].change[kTimeOffset];
     if (std::abs(offset_s) < 3.0 * refinement.cameras[c].sigma[kTimeOffset]) continue;
     fmt::print(
-        "{}: pictures are taken {:.1f} ms {} their timestamps say; correct it where the "
-        "timestamps are made, a rig file has no time offset\n",
-        kCameraNames[c], 1e3 * std::abs(offset_s), offset_s > 0.0 ? "later than" : "before");
+        "{}: pictures are taken {:.1f} ms {} than their time stamps say; correct the time stamps "
+        "where they are made, because a rig file has no time offset\n",
+        kCameraNames[c], 1e3 * std::abs(offset_s), offset_s > 0.0 ? "later" : "earlier");
   }
 }
 
@@ -82,15 +82,17 @@ void CalibCommand::declare_import(CLI::App& calib) {
       ->check(output_file());
   // Each takes one value, because a further one is a FILE.
   imports
-      ->add_option("--map-camera", camera_names_,
-                   "THEIRS=OURS: what a camera of the files is called here, such as cam0=front; "
-                   "may be repeated")
+      ->add_option(
+          "--map-camera", camera_names_,
+          "THEIRS=OURS: a camera's name in the files, and its name here, such as cam0=front; "
+          "may be repeated")
       ->allow_extra_args(false);
   imports->add_option("--extrinsics", extrinsics_file_,
-                      "File with places on the vehicle, for formats without (docs/calibration.md)");
+                      "File with the extrinsics, for formats that have none (docs/calibration.md)");
   imports->add_option("--base", base_file_, "Rig file that supplies what the files lack");
-  imports->add_option("--image-size", image_size_,
-                      "WIDTHxHEIGHT in pixels, for formats without (nuScenes: 1600x900)");
+  imports->add_option(
+      "--image-size", image_size_,
+      "WIDTHxHEIGHT of the images in pixels, for formats that lack it (nuScenes: 1600x900)");
   imports->add_option("--token", tokens_, "Calibrated sensor of nuScenes to use; may be repeated")
       ->allow_extra_args(false);
   imports->footer(
@@ -126,9 +128,9 @@ void CalibCommand::declare_inputs(CLI::App& command, CalibCommand& self) {
 }
 
 void CalibCommand::declare_check(CLI::App& calib) {
-  auto* check = calib.add_subcommand(
-      "check",
-      "Compare a picture folder with the map and judge each camera; exit code 1: not good");
+  auto* check = calib.add_subcommand("check",
+                                     "Compare a picture folder with the map and judge each camera; "
+                                     "exit code 1 if one is not good");
   declare_inputs(*check, *this);
   check->footer(
       "Examples:\n"

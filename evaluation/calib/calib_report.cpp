@@ -67,8 +67,8 @@ std::string advice_on(CameraVerdict verdict, size_t camera, const std::string& f
     case CameraVerdict::kOff:
       return "refine it with `bevloc calib refine`";
     case CameraVerdict::kMismatch:
-      return "check cable, name, lens model and mounting of this camera; if it is so for all of "
-             "them: the map, the reference poses and the clock";
+      return "check cable, name, lens model and mounting of this camera; if all cameras are so, "
+             "check the map, the reference poses and the clock";
     case CameraVerdict::kTooLittle:
       return "record a drive past more painted lines";
     case CameraVerdict::kNoPictures:

@@ -39,6 +39,8 @@ Result<Campaign> Campaign::create(const std::string& config_file, const std::str
   auto rig = read_rig(config->rig_file);
   if (!rig) return tl::unexpected(rig.error());
   config->simulation->duration_s = options.duration_s;
+  // No drive may know what another one learned.
+  config->learned_calibration_file.clear();
   Campaign campaign(std::move(*config), std::move(*rig), options);
   if (options.level == Level::kStage) {
     auto table = read_match_table(given_or_shipped(table_file));

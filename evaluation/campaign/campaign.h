@@ -40,6 +40,9 @@ class Campaign {
   static Result<Campaign> create(const std::string& config_file, const std::string& table_file,
                                  const CampaignOptions& options);
 
+  /// What all drives have in common. Their towns, maps and faults differ.
+  const DriveConfig& config() const { return config_; }
+
   /// One run, through a procedural town, or through `map` if it is not empty. Every cycle goes to
   /// `sink`. `pictures`: the cache that runs of the same seed and map share; null without a cache.
   Status drive(const Mode& mode, uint64_t seed, const std::string& map, const CycleSink& sink,

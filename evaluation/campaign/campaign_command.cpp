@@ -15,7 +15,7 @@ void CampaignCommand::declare(CLI::App& app) {
   auto* campaign = app.add_subcommand(
       "campaign", "Run failure modes on simulated drives: is a wrong pose ever sent as valid?");
   campaign->add_option("--modes", inputs_.modes,
-                       "Names of modes (--list); without: all of the level");
+                       "Names of modes (see --list); default: all of the level");
   campaign->add_option("--seeds", inputs_.options.seeds, "Number of seeds, each with its own town")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();

@@ -9,6 +9,11 @@
 #include "evaluation/town_seeds.h"
 
 namespace bevloc::evaluation {
+namespace {
+
+constexpr const char* kShippedTable = "evaluation/campaign/matches.csv";
+
+}  // namespace
 
 void CampaignInputs::declare(CLI::App& command) {
   add_choice(command, "--level", options.level,
@@ -23,17 +28,24 @@ void CampaignInputs::declare(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--config", config, "Configuration with mock cameras")->capture_default_str();
   command.add_option("--matches", table, "Measured matches for --level stage")
-      ->capture_default_str();
+      ->check(name_of("a file of `bevloc tune matches`"))
+      ->default_str(kShippedTable);
 }
 
 Result<LoadedCampaign> CampaignInputs::load() const {
   if (Status towns = check_town_seeds("--first-seed", options.first_seed, options.seeds); !towns) {
     return tl::unexpected(towns.error());
   }
+  if (options.level == Level::kPictures && !table.empty()) {
+    return fail(
+        "--matches: found {} with --level pictures, wanted --level stage, because pictures need no "
+        "measured matches",
+        table);
+  }
   spdlog::set_level(spdlog::level::err);
   auto chosen = modes_named(modes, options.level);
   if (!chosen) return tl::unexpected(chosen.error());
-  auto campaign = Campaign::create(config, table, options);
+  auto campaign = Campaign::create(config, table.empty() ? kShippedTable : table, options);
   if (!campaign) return tl::unexpected(campaign.error());
   return LoadedCampaign{std::move(*campaign), std::move(*chosen)};
 }

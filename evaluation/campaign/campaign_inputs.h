@@ -22,14 +22,14 @@ struct CampaignInputs {
   CampaignOptions options;
   std::vector<std::string> modes;  ///< names; without names, all modes of the level
   std::string config = "config/demo.yaml";
-  std::string table = "evaluation/campaign/matches.csv";
+  std::string table;  ///< measured matches; empty for the shipped ones
 
   /// Adds the options that the commands share. The inputs must outlive `command`.
   void declare(CLI::App& command);
 
   /// Loads the campaign and finds its modes. From then on only errors are logged, because runs with
-  /// faults log much. Fails for seeds of training, for an unknown mode, and as Campaign::create()
-  /// does.
+  /// faults log much. Fails for seeds of training, for an unknown mode, for a table that the level
+  /// does not use, and as Campaign::create() does.
   Result<LoadedCampaign> load() const;
 };
 

@@ -5,6 +5,7 @@
 
 #include "can/messages/message_table.h"
 #include "can/publisher/solution_fd.h"
+#include "common/alert_limits.h"
 #include "evaluation/drive/error_statistics.h"
 
 namespace bevloc::evaluation {
@@ -12,7 +13,27 @@ namespace {
 
 constexpr double kNotSent = std::numeric_limits<double>::quiet_NaN();
 
+/// The error as a part of the alert limit of its axis, on the worst axis.
+double part_of_limit(const JudgedError& pose) {
+  return pose.error.cwiseAbs().cwiseQuotient(kFreewayAlertLimits).maxCoeff();
+}
+
+/// Rounded to whole nanoseconds.
+Duration rounded_time(double time_s) {
+  return std::chrono::round<Duration>(std::chrono::duration<double>(time_s));
+}
+
 }  // namespace
+
+std::vector<double> missing_cycles_s(double before_s, double now_s) {
+  std::vector<double> times_s;
+  const Duration now = rounded_time(now_s);
+  for (Duration next = rounded_time(before_s) + kSolutionCycle; next + kSolutionCycle / 2 < now;
+       next += kSolutionCycle) {
+    times_s.push_back(to_seconds(next));
+  }
+  return times_s;
+}
 
 CycleReader::CycleReader(std::unique_ptr<can::Bus> bus, const can::BaseIds& base,
                          const GeoOrigin& origin, TruthAt truth, Time drive_start)
@@ -33,7 +54,11 @@ JudgedCycle CycleReader::step(Time now) {
         take_deviation(can::part_of_solution(received->frame, part, base_));
       }
     }
-    if (const auto pose = reader_.accept(*received)) cycle.pose = judge(*pose);
+    const auto pose = reader_.accept(*received);
+    if (!pose) continue;
+    const JudgedError judged = judge(*pose);
+    const bool is_worst = !cycle.pose || part_of_limit(judged) > part_of_limit(*cycle.pose);
+    if (is_worst) cycle.pose = judged;
   }
   cycle.time_s = to_seconds(now - drive_start_);
   cycle.state = reader_.state();

@@ -4,10 +4,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "can/bus/bus.h"
+#include "can/messages/message_table.h"
 #include "evaluation/drive/pose_reader.h"
 #include "pipeline/map/hd_map.h"
 
@@ -25,8 +27,16 @@ struct JudgedCycle {
   double time_s = 0.0;  ///< of the drive
   HealthState state = HealthState::kInit;
   WhyMask why;
-  std::optional<JudgedError> pose;  ///< empty if no valid pose was sent
+  /// Empty if no valid pose was sent. Of several poses, the one whose error is the largest part of
+  /// an alert limit.
+  std::optional<JudgedError> pose;
 };
+
+inline constexpr Duration kSolutionCycle = std::chrono::milliseconds(can::kSolutionCycleMs);
+
+/// The times of the bus cycles that are missing between two cycles, because the appliance was
+/// silent. Empty if the second cycle follows the first at once. All times are seconds of the drive.
+std::vector<double> missing_cycles_s(double before_s, double now_s);
 
 /// A passive node on the bus. Unlike Judge, it takes every pose (100 per second), and does nothing
 /// else. One thread.

@@ -5,18 +5,15 @@
 #include "common/option_checks.h"
 #include "evaluation/campaign/stanford_diagram.h"
 #include "evaluation/command_output.h"
+#include "evaluation/map_turns.h"
 
 namespace bevloc::evaluation {
-namespace {
-
-constexpr std::string_view kFaultFree = "none";
-
-}  // namespace
 
 void IntegrityCommand::declare(CLI::App& eval) {
   auto* integrity = eval.add_subcommand(
       "integrity", "Compare errors with protection levels over drives and failure modes");
-  integrity->add_option("--modes", inputs_.modes, "Modes (`bevloc campaign --list`); without: all");
+  integrity->add_option("--modes", inputs_.modes,
+                        "Names of modes (`bevloc campaign --list`); default: all");
   integrity
       ->add_option("--drives", inputs_.options.seeds, "Number of seeds; each drives every mode")
       ->check(CLI::Range(1, 1'000'000))
@@ -34,24 +31,21 @@ void IntegrityCommand::declare(CLI::App& eval) {
 }
 
 Status IntegrityCommand::run() const {
+  const CampaignOptions& options = inputs_.options;
+  if (Status driven = check_map_turns(maps_, "--drives", options.seeds); !driven) return driven;
   const auto loaded = inputs_.load();
   if (!loaded) return tl::unexpected(loaded.error());
-  const CampaignOptions& options = inputs_.options;
   std::vector<NamedDiagram> diagrams{{"no fault", {}}, {"with faults", {}}};
   const int runs = options.seeds * static_cast<int>(loaded->modes.size());
   int done = 0;
   for (int k = 0; k < options.seeds; ++k) {
-    const auto number = static_cast<size_t>(k);
-    const bool on_map = !maps_.empty() && k % 2 == 1;
-    const std::string map = on_map ? maps_[number / 2 % maps_.size()] : std::string();
+    const uint64_t seed = options.first_seed + static_cast<uint64_t>(k);
+    const std::string map = map_of_drive(maps_, k);
     for (const Mode* mode : loaded->modes) {
-      StanfordDiagram& diagram = diagrams[mode->name == kFaultFree ? 0 : 1].diagram;
-      bool has_fix = false;
-      const Status status = loaded->campaign.drive(*mode, options.first_seed + number, map,
-                                                   [&](const JudgedCycle& cycle) {
-                                                     has_fix = has_fix || cycle.pose.has_value();
-                                                     if (has_fix) diagram.add(cycle);
-                                                   });
+      StanfordDiagram& diagram = diagrams[mode->fails() ? 1 : 0].diagram;
+      diagram.begin_drive();
+      const Status status = loaded->campaign.drive(
+          *mode, seed, map, [&diagram](const JudgedCycle& cycle) { diagram.add(cycle); });
       if (!status) return status;
       show_progress(++done, runs, "drives");
     }

@@ -9,6 +9,7 @@
 #include "drivers/mock/mock_scene.h"
 #include "drivers/mock/true_rig.h"
 #include "evaluation/drive/configured_world.h"
+#include "firmware/config/localizer_options.h"
 #include "firmware/runtime/appliance.h"
 #include "sim/random.h"
 
@@ -142,7 +143,7 @@ Result<std::vector<MeasuredPlace>> record_matches(const DriveConfig& config, con
   if (!world) return tl::unexpected(world.error());
   RecordedDrive recorded(config, rig, std::move(*world));
   const MapIndex index(recorded.map());
-  const LocalizerOptions options = firmware::localizer_options(config);
+  const LocalizerOptions options = firmware::localizer_options_of(config);
   auto localizer = Localizer::create(rig, index, config.model_file.string(), options);
   if (!localizer) return tl::unexpected(localizer.error());
   MatchRecorder recorder(options, **localizer,

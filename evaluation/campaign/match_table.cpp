@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -103,6 +105,42 @@ MeasuredMatch match_of(const Numbers& n) {
   return match;
 }
 
+/// The line of a match, as in the file.
+struct TableLine {
+  std::string place;  ///< FILE:LINE
+  std::string text;
+};
+
+Result<Numbers> numbers_of_line(const TableLine& line) {
+  Numbers n{};
+  if (!parse(line.text, n) || n[11] <= 0 || n[12] <= 0 || n[13] <= 0) {
+    return fail("{}: found '{}', wanted {} whole numbers with sigmas above 0", line.place,
+                line.text, kColumns);
+  }
+  if (n[4] != static_cast<int64_t>(SearchRange::kTracking) &&
+      n[4] != static_cast<int64_t>(SearchRange::kAcquiring)) {
+    return fail("{}: found the range {}, wanted 0 (tracking) or 1 (acquiring)", line.place, n[4]);
+  }
+  return n;
+}
+
+/// The modelled matcher replays one drive at a time, and needs matches of both ranges in it.
+Status check_ranges(const MatchTable& table, const std::string& file) {
+  std::map<int, std::set<SearchRange>> ranges;
+  for (const MeasuredPlace& place : table.places) {
+    for (const MeasuredMatch& match : place.matches) ranges[place.drive].insert(match.range);
+  }
+  for (const auto& [drive, found] : ranges) {
+    if (found.size() == 2) continue;
+    const bool tracking = found.contains(SearchRange::kTracking);
+    return fail(
+        "{}: found no match of range {} in drive {}, wanted both ranges in each drive; measure "
+        "longer drives with `bevloc tune matches`",
+        file, tracking ? "1 (acquiring)" : "0 (tracking)", drive);
+  }
+  return {};
+}
+
 }  // namespace
 
 Eigen::Matrix3d MeasuredMatch::covariance() const {
@@ -126,12 +164,10 @@ Result<MatchTable> read_match_table(const std::filesystem::path& file) {
     return fail("{}:1: found other columns, wanted those of `bevloc tune matches`", file.string());
   }
   MatchTable table;
-  Numbers n{};
   for (int number = 2; std::getline(lines, line); ++number) {
-    if (!parse(line, n) || n[11] <= 0 || n[12] <= 0 || n[13] <= 0) {
-      return fail("{}:{}: found '{}', wanted {} whole numbers with sigmas above 0", file.string(),
-                  number, line, kColumns);
-    }
+    const auto read = numbers_of_line({fmt::format("{}:{}", file.string(), number), line});
+    if (!read) return tl::unexpected(read.error());
+    const Numbers& n = *read;
     const auto drive = static_cast<int>(n[0]);
     const auto frame = static_cast<int>(n[1]);
     const bool is_new = table.places.empty() || table.places.back().drive != drive ||
@@ -146,6 +182,7 @@ Result<MatchTable> read_match_table(const std::filesystem::path& file) {
     table.places.back().matches.push_back(match_of(n));
   }
   if (table.places.empty()) return fail("{}: found no match, wanted some", file.string());
+  if (Status both = check_ranges(table, file.string()); !both) return tl::unexpected(both.error());
   return table;
 }
 

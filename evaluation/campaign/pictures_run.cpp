@@ -25,9 +25,10 @@ Status run_pictures(const DriveConfig& config, const Rig& rig,
   drivers::VirtualClock clock;
   const Time drive_start = clock.now() + kPicturesLead;
   can::MockWire wire(kWireCapacity);
-  firmware::Hardware hardware{
-      drive->make_cameras(config, rig, clock, drive_start, pictures),
-      std::make_unique<FaultyBus>(wire.connect(), drive->faults(), clock, drive_start), &clock};
+  firmware::Hardware hardware{drive->make_cameras(config, rig, clock, drive_start, pictures),
+                              std::make_unique<FaultyBus>(wire.connect(), drive->faults(), clock,
+                                                          drive_start, config.simulation->seed),
+                              &clock};
   auto appliance = firmware::Appliance::create(config, rig, drive->map(), std::move(hardware));
   if (!appliance) return tl::unexpected(appliance.error());
   SimulatedVehicle vehicle(*drive, config.simulation->seed, config.can, wire.connect(),

@@ -9,7 +9,6 @@
 namespace bevloc::evaluation {
 namespace {
 
-constexpr double kCycle_s = 1e-3 * can::kSolutionCycleMs;
 /// How long the pose must have been right for the run to count as recovered.
 constexpr double kRecovered_s = 1.0;
 constexpr std::string_view kPrefix = "Why_";
@@ -38,28 +37,38 @@ double RunOutcome::valid_share() const {
 }
 
 double RunOutcome::beyond_alert_s() const {
-  return kCycle_s * static_cast<double>(beyond_alert);
+  return to_seconds(kSolutionCycle) * static_cast<double>(beyond_alert);
 }
 
 RunOutcome RunJudge::outcome() const {
   RunOutcome outcome = outcome_;
-  if (outcome.first_fix_s < 0.0 && !outcome.detection_s) {
-    outcome.detected_by = "never valid";
-    outcome.detection_s = 0.0;
-  }
+  if (outcome.first_fix_s < 0.0 && !outcome.detection_s) outcome.detected_by = "never valid";
   return outcome;
 }
 
 RunJudge::RunJudge(const FaultTime& fault, WhyMask named_by) : fault_(fault), named_by_(named_by) {}
 
 void RunJudge::add(const JudgedCycle& cycle) {
+  if (latest_) {
+    // Of a silent appliance, a receiver still has the state and the reasons, but no valid pose.
+    JudgedCycle missing = *latest_;
+    missing.pose.reset();
+    for (const double time_s : missing_cycles_s(latest_->time_s, cycle.time_s)) {
+      missing.time_s = time_s;
+      take(missing);
+    }
+  }
+  take(cycle);
+  latest_ = cycle;
+}
+
+void RunJudge::take(const JudgedCycle& cycle) {
   note_state(cycle);
   if (cycle.pose) note_pose(cycle);
   const bool before_fault = cycle.time_s < fault_.from_s;
   // Why bits that are set because nothing has arrived yet are no detection of a fault from the
   // start.
-  if (before_fault || !has_cycle_) why_before_ = cycle.why;
-  has_cycle_ = true;
+  if (before_fault || !latest_) why_before_ = cycle.why;
   if (!before_fault) note_detection(cycle);
   if (cycle.time_s >= fault_.until_s) note_recovery(cycle);
   was_valid_ = cycle.pose.has_value();

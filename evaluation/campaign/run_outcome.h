@@ -26,7 +26,8 @@ struct TimelineEntry {
 using PoseCounts = std::array<uint64_t, 3>;
 
 struct RunOutcome {
-  uint64_t cycles = 0;                              ///< since the first valid pose
+  /// Since the first valid pose. Cycles of a silent appliance count, too.
+  uint64_t cycles = 0;
   uint64_t valid = 0;                               ///< cycles with a valid pose
   uint64_t beyond_alert = 0;                        ///< valid poses beyond an alert limit
   Eigen::Vector3d worst = Eigen::Vector3d::Zero();  ///< largest absolute errors of valid poses
@@ -39,7 +40,7 @@ struct RunOutcome {
   int lost = 0;                       ///< how often in all
   double first_fix_s = -1.0;          ///< the first valid pose; negative if there was none
   std::string detected_by;            ///< why bits, "not valid" or "never valid"; or empty
-  std::optional<double> detection_s;  ///< since the start of the fault
+  std::optional<double> detection_s;  ///< since the start of the fault; empty if "never valid"
   std::optional<double> recovery_s;   ///< since the end of the fault
   std::vector<TimelineEntry> timeline;
 
@@ -54,12 +55,15 @@ class RunJudge {
   /// is set that was not set when the fault began, or when a pose that was valid is not any more.
   RunJudge(const FaultTime& fault, WhyMask named_by);
 
+  /// Takes the cycles in the order of their times. In the cycles that are missing between two of
+  /// them, there was no valid pose.
   void add(const JudgedCycle& cycle);
 
   /// The outcome of the run. Call it after the last cycle.
   RunOutcome outcome() const;
 
  private:
+  void take(const JudgedCycle& cycle);
   void note_state(const JudgedCycle& cycle);
   void note_pose(const JudgedCycle& cycle);
   void note_detection(const JudgedCycle& cycle);
@@ -69,7 +73,7 @@ class RunJudge {
   WhyMask named_by_;
   RunOutcome outcome_;
   WhyMask why_before_;  ///< why bits that have been set since before the fault
-  bool has_cycle_ = false;
+  std::optional<JudgedCycle> latest_;
   bool was_valid_ = false;
   std::optional<double> good_since_s_;  ///< since when, after the fault, the pose has been right
 };

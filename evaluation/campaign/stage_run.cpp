@@ -15,7 +15,6 @@
 namespace bevloc::evaluation {
 namespace {
 
-constexpr Duration kCycle = std::chrono::milliseconds(can::kSolutionCycleMs);
 /// The drive does not start at time zero, because a real machine was started some time before.
 constexpr Time kDriveStart{std::chrono::seconds(10)};
 
@@ -27,7 +26,7 @@ class StageRun {
            const SimulatedDrive& drive)
       : fault_(mode.time_in(config.simulation->duration_s)),
         suspended_s_(mode.suspended_s),
-        own_bus_(wire_.connect(), drive.faults(), clock_, kDriveStart),
+        own_bus_(wire_.connect(), drive.faults(), clock_, kDriveStart, config.simulation->seed),
         vehicle_(drive, config.simulation->seed, config.can, wire_.connect(), kDriveStart),
         reader_(
             wire_.connect(), config.can.base_ids, drive.map().origin,
@@ -48,7 +47,7 @@ class StageRun {
 
   void run(double duration_s, const CycleSink& sink) {
     const Time end = kDriveStart + from_seconds(duration_s);
-    for (; clock_.now() < end; clock_.advance(kCycle)) {
+    for (; clock_.now() < end; clock_.advance(kSolutionCycle)) {
       const Time now = clock_.now();
       vehicle_.send_due(now);
       if (is_suspended(now)) {
@@ -58,7 +57,7 @@ class StageRun {
       }
       input_.step(Duration::zero());
       vision_.step(now);
-      estimation_.tick(now);
+      estimation_.tick(clock_);
       sink(reader_.step(now));
     }
   }

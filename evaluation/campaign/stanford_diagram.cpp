@@ -50,13 +50,29 @@ nlohmann::json json_of_axis(const StanfordDiagram& diagram, int axis) {
 
 }  // namespace
 
+void StanfordDiagram::begin_drive() {
+  ++drives_;
+  latest_s_.reset();
+}
+
 void StanfordDiagram::add(const JudgedCycle& cycle) {
+  if (latest_s_) {
+    cycles_ += missing_cycles_s(*latest_s_, cycle.time_s).size();
+  } else if (cycle.pose) {
+    ++drives_with_pose_;
+  } else {
+    return;
+  }
+  latest_s_ = cycle.time_s;
   ++cycles_;
-  if (!cycle.pose) return;
+  if (cycle.pose) count(*cycle.pose);
+}
+
+void StanfordDiagram::count(const JudgedError& pose) {
   ++valid_;
   for (int i = 0; i < 3; ++i) {
-    const double error = std::abs(cycle.pose->error(i));
-    const double level = cycle.pose->protection(i);
+    const double error = std::abs(pose.error(i));
+    const double level = pose.protection(i);
     if (!std::isfinite(level)) continue;
     const double limit = kFreewayAlertLimits(i);
     Axis& axis = axes_[static_cast<size_t>(i)];
@@ -84,6 +100,11 @@ std::string to_table(const std::vector<NamedDiagram>& diagrams) {
                           100.0 * share(axis.available, named.diagram.cycles()));
     }
   }
+  text += '\n';
+  for (const NamedDiagram& named : diagrams) {
+    text += fmt::format("{}: {} of {} drives had a pose\n", named.name,
+                        named.diagram.drives_with_pose(), named.diagram.drives());
+  }
   return text;
 }
 
@@ -92,6 +113,8 @@ std::string to_json(const std::vector<NamedDiagram>& diagrams) {
   for (const NamedDiagram& named : diagrams) {
     nlohmann::json object;
     object["name"] = named.name;
+    object["drives"] = named.diagram.drives();
+    object["drives_with_pose"] = named.diagram.drives_with_pose();
     object["cycles"] = named.diagram.cycles();
     object["valid_poses"] = named.diagram.valid();
     for (int i = 0; i < 3; ++i) object["axes"].push_back(json_of_axis(named.diagram, i));

@@ -11,6 +11,7 @@
 #include "common/shipped_file.h"
 #include "evaluation/campaign/match_recorder.h"
 #include "evaluation/command_output.h"
+#include "evaluation/map_turns.h"
 #include "evaluation/town_seeds.h"
 #include "pipeline/calibration/rig_yaml.h"
 
@@ -40,6 +41,7 @@ void TuneMatchesCommand::declare(CLI::App& tune) {
 
 Status TuneMatchesCommand::run() const {
   if (Status towns = check_town_seeds("--first-seed", first_seed_, drives_); !towns) return towns;
+  if (Status driven = check_map_turns(maps_, "--drives", drives_); !driven) return driven;
   spdlog::set_level(spdlog::level::warn);
   auto config = load_drive_config(given_or_shipped(config_));
   if (!config) return tl::unexpected(config.error());
@@ -54,9 +56,10 @@ Status TuneMatchesCommand::run() const {
   for (int drive = 0; drive < drives_; ++drive) {
     config->simulation->seed = first_seed_ + static_cast<uint64_t>(drive);
     config->simulation->town_seed = config->simulation->seed;
-    if (!maps_.empty() && drive % 2 == 1) {
+    const std::string map = map_of_drive(maps_, drive);
+    if (!map.empty()) {
       config->simulation->town_seed.reset();
-      config->map_file = maps_[static_cast<size_t>(drive) / 2 % maps_.size()];
+      config->map_file = map;
     }
     auto places = record_matches(*config, *rig, drive, [&](double time_s) {
       show_progress(drive * seconds + static_cast<int>(time_s) + 1, drives_ * seconds,

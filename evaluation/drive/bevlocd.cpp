@@ -101,7 +101,7 @@ Status run(const firmware::ProgramOptions& program, const DriveOptions& drive,
   if (Status status = firmware::override_config(program, *config); !status) return status;
   if (program.check_config) return firmware::check_and_print(program, *config);
   firmware::set_log_level(config->log_level);
-  const auto rig = firmware::at_key("calibration.rig", read_rig(config->rig_file));
+  const auto rig = firmware::rig_of(*config);
   if (!rig) return tl::unexpected(rig.error());
   if (config->simulation) return simulate(drive, *config, *rig);
   BusFactory buses(config->can);

@@ -7,7 +7,8 @@ namespace bevloc::evaluation {
 Result<BusLog> BusLog::create(const std::filesystem::path& path) {
   BusLog log(path);
   if (!log.file_) {
-    return fail("{}: found no way to write the bus log, wanted to create it", path.string());
+    return fail("{}: found no way to create the bus log, wanted a folder that can be written",
+                path.string());
   }
   return log;
 }

@@ -7,13 +7,10 @@
 namespace bevloc::evaluation {
 
 Duration ClockFaults::gap_due(double elapsed_s) {
-  double gap_s = 0.0;
-  for (const sim::Fault& fault : faults_->active(sim::FaultInput::kClock, elapsed_s)) {
-    if (fault.kind != sim::FaultKind::kClockGap || fault.from_s < jumped_until_s_) continue;
-    jumped_until_s_ = fault.from_s + fault.amounts.gap_s;
-    gap_s = std::max(gap_s, jumped_until_s_ - elapsed_s);
-  }
-  return from_seconds(gap_s);
+  const double until_s = sim::clock_gaps_end_s(elapsed_s, faults_->all(sim::FaultInput::kClock));
+  if (until_s <= jumped_until_s_) return Duration::zero();
+  jumped_until_s_ = until_s;
+  return from_seconds(std::max(0.0, until_s - elapsed_s));
 }
 
 Duration ClockFaults::suspension_due(double elapsed_s) {

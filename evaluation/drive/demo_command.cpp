@@ -26,7 +26,7 @@ void DemoCommand::declare(CLI::App& app) {
 
 Status DemoCommand::run() const {
   const auto config = shipped_file(kConfig);
-  if (!config) return fail("{}: found no such file of bevloc, wanted that of the demo", kConfig);
+  if (!config) return fail("{}: found no such file, wanted the demo's configuration", kConfig);
   std::vector<std::string> arguments{"--config", config->string()};
   arguments.insert(arguments.end(), rest_.begin(), rest_.end());
   return replace_process(folder_of_this_program() / "bevlocd", std::move(arguments));

@@ -4,14 +4,12 @@
 #include <memory>
 #include <utility>
 
+#include "common/time.h"
 #include "evaluation/drive/fault_config.h"
-#include "firmware/config/config_milliseconds.h"
 #include "sim/world/world_generator.h"
 
 namespace bevloc::evaluation {
 namespace {
-
-using firmware::from_milliseconds;
 
 sim::Conditions read_conditions(std::optional<YamlMap> yaml) {
   sim::Conditions conditions;

@@ -17,7 +17,7 @@ void FaultCommand::declare(CLI::App& app) {
       ->required();
   auto* list = fault->add_subcommand("list", "Show all faults with their numbers");
   auto* clear = fault->add_subcommand("clear", "Remove all faults, or the one of a number");
-  clear->add_option("number", words_, "As list shows it")->expected(0, 1);
+  clear->add_option("number", words_, "Number of the fault, as `list` shows it")->expected(0, 1);
   fault->footer(
       "Examples:\n"
       "  bevloc fault --socket faults.sock set gnss_jump east_m=20 for_s=5\n"

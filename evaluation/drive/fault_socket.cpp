@@ -10,9 +10,9 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <unistd.h>
 
 #include "common/number_text.h"
+#include "sim/faults/drive_clock.h"
 #include "sim/faults/fault_text.h"
 
 namespace bevloc::evaluation {
@@ -38,23 +38,6 @@ const sockaddr* as_generic(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
 
-/// Closes the descriptor at the end.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int number() const { return number_; }
-  int release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
-
 /// One line per fault.
 std::string to_list(const sim::FaultBoard& faults) {
   std::string text;
@@ -68,30 +51,29 @@ std::string to_list(const sim::FaultBoard& faults) {
 
 Result<std::unique_ptr<FaultServer>> FaultServer::open(const std::filesystem::path& path,
                                                        std::shared_ptr<sim::FaultBoard> faults,
-                                                       bool lockstep) {
+                                                       double drive_s, bool lockstep) {
   const auto address = address_of(path);
   if (!address) return tl::unexpected(address.error());
-  Descriptor descriptor(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  FileDescriptor descriptor(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   std::error_code ignored;
   if (std::filesystem::is_socket(path, ignored)) std::filesystem::remove(path, ignored);
-  if (descriptor.number() < 0 ||
-      bind(descriptor.number(), as_generic(*address), sizeof *address) != 0) {
+  if (descriptor.get() < 0 || bind(descriptor.get(), as_generic(*address), sizeof *address) != 0) {
     return fail("{}: found no way to make the fault socket ({}), wanted a path to write to",
                 path.string(), std::strerror(errno));
   }
   return std::unique_ptr<FaultServer>(
-      new FaultServer(descriptor.release(), path, std::move(faults), lockstep));
+      new FaultServer(std::move(descriptor), path, std::move(faults), drive_s, lockstep));
 }
 
-FaultServer::FaultServer(int descriptor, std::filesystem::path path,
-                         std::shared_ptr<sim::FaultBoard> faults, bool lockstep)
-    : descriptor_(descriptor),
+FaultServer::FaultServer(FileDescriptor descriptor, std::filesystem::path path,
+                         std::shared_ptr<sim::FaultBoard> faults, double drive_s, bool lockstep)
+    : descriptor_(std::move(descriptor)),
       path_(std::move(path)),
       faults_(std::move(faults)),
+      drive_s_(drive_s),
       lockstep_(lockstep) {}
 
 FaultServer::~FaultServer() {
-  close(descriptor_);
   std::error_code ignored;
   std::filesystem::remove(path_, ignored);
 }
@@ -101,11 +83,11 @@ void FaultServer::step(double now_s) {
   while (true) {
     sockaddr_un sender{};
     socklen_t sender_size = sizeof sender;
-    const ssize_t size = recvfrom(descriptor_, buffer.data(), buffer.size(), 0,
+    const ssize_t size = recvfrom(descriptor_.get(), buffer.data(), buffer.size(), 0,
                                   reinterpret_cast<sockaddr*>(&sender), &sender_size);
     if (size < 0) return;
     const std::string reply = answer({buffer.data(), static_cast<size_t>(size)}, now_s);
-    sendto(descriptor_, reply.data(), reply.size(), 0, as_generic(sender), sender_size);
+    sendto(descriptor_.get(), reply.data(), reply.size(), 0, as_generic(sender), sender_size);
   }
 }
 
@@ -122,15 +104,33 @@ std::string FaultServer::answer(const std::string& command, double now_s) {
 std::string FaultServer::set(const std::string& text, double now_s) {
   const auto fault = sim::parse_fault(text, std::max(0.0, now_s));
   if (!fault) return fmt::format("{}{}", kError, fault.error().message);
-  const sim::FaultKindInfo& info = sim::info_of(fault->kind);
+  const Status possible = check(*fault, now_s);
+  if (!possible) return fmt::format("{}{}", kError, possible.error().message);
+  return fmt::format("{}: {}\n", faults_->add(*fault), sim::to_text(*fault));
+}
+
+/// Fails for a fault that this running drive cannot show.
+Status FaultServer::check(const sim::Fault& fault, double now_s) const {
+  const sim::FaultKindInfo& info = sim::info_of(fault.kind);
   if (info.input == sim::FaultInput::kMap) {
-    return fmt::format("{}found {}, wanted it in simulation.faults: the map is read at the start",
-                       kError, info.name);
+    return fail(
+        "found {} in a running drive, wanted it in simulation.faults, because the map is read only "
+        "once",
+        info.name);
   }
   if (lockstep_ && info.input == sim::FaultInput::kThread) {
-    return fmt::format("{}found {}, wanted a drive without --fast", kError, info.name);
+    return fail("found {} with --fast, wanted a drive without, because one thread runs everything",
+                info.name);
   }
-  return fmt::format("{}: {}\n", faults_->add(*fault), sim::to_text(*fault));
+  if (fault.kind != sim::FaultKind::kClockSuspend) return {};
+  const double begins_s =
+      std::max(now_s, fault.from_s) + sim::added_time_s(faults_->all(sim::FaultInput::kClock));
+  const double left_s = std::max(0.0, drive_s_ - begins_s);
+  if (fault.amounts.gap_s <= left_s) return {};
+  return fail(
+      "gap_s: found {}, wanted at most {:.1f}, because the simulated drive ends then; a longer "
+      "suspension is possible in simulation.faults",
+      fault.amounts.gap_s, left_s);
 }
 
 std::string FaultServer::clear(const std::string& number, double now_s) {
@@ -147,23 +147,22 @@ Result<std::string> send_fault_command(const std::filesystem::path& path,
                                        const std::string& command) {
   const auto address = address_of(path);
   if (!address) return tl::unexpected(address.error());
-  const Descriptor descriptor(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const FileDescriptor descriptor(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const sa_family_t any_name = AF_UNIX;  // the kernel chooses a name for the answer
   const auto failure = [&path](std::string_view what) {
     return fail("{}: found no running drive with this simulation.fault_socket ({}), wanted one",
                 path.string(), what);
   };
-  if (descriptor.number() < 0 ||
-      bind(descriptor.number(), reinterpret_cast<const sockaddr*>(&any_name), sizeof any_name) !=
-          0 ||
-      sendto(descriptor.number(), command.data(), command.size(), 0, as_generic(*address),
+  if (descriptor.get() < 0 ||
+      bind(descriptor.get(), reinterpret_cast<const sockaddr*>(&any_name), sizeof any_name) != 0 ||
+      sendto(descriptor.get(), command.data(), command.size(), 0, as_generic(*address),
              sizeof *address) < 0) {
     return failure(std::strerror(errno));
   }
-  pollfd readable{descriptor.number(), POLLIN, 0};
+  pollfd readable{descriptor.get(), POLLIN, 0};
   if (poll(&readable, 1, kPatience_ms) != 1) return failure("no answer");
   Buffer buffer;
-  const ssize_t size = recv(descriptor.number(), buffer.data(), buffer.size(), 0);
+  const ssize_t size = recv(descriptor.get(), buffer.data(), buffer.size(), 0);
   if (size < 0) return failure(std::strerror(errno));
   const std::string answer(buffer.data(), static_cast<size_t>(size));
   if (answer.starts_with(kError)) return fail("{}", answer.substr(kError.size()));

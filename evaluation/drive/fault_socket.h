@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "common/file_descriptor.h"
 #include "common/result.h"
 #include "sim/faults/fault_board.h"
 
@@ -15,28 +16,29 @@ namespace bevloc::evaluation {
 /// command was refused. One thread.
 class FaultServer {
  public:
-  /// Fails if the socket cannot be made. A socket that an earlier run left is replaced. `lockstep`:
-  /// the drive has one thread, so faults that let a thread hang are refused.
+  /// Fails if the socket cannot be made. A socket that an earlier run left is replaced.
+  /// `drive_s`: the length of the planned drive; suspensions beyond its end are refused.
+  /// `lockstep`: the drive has one thread, so faults that let a thread hang are refused.
   static Result<std::unique_ptr<FaultServer>> open(const std::filesystem::path& path,
                                                    std::shared_ptr<sim::FaultBoard> faults,
-                                                   bool lockstep);
+                                                   double drive_s, bool lockstep);
   ~FaultServer();
-  FaultServer(const FaultServer&) = delete;
-  FaultServer& operator=(const FaultServer&) = delete;
 
   /// Answers all waiting commands, without waiting for more. Faults begin at `now_s` of the drive.
   void step(double now_s);
 
  private:
-  FaultServer(int descriptor, std::filesystem::path path, std::shared_ptr<sim::FaultBoard> faults,
-              bool lockstep);
+  FaultServer(FileDescriptor descriptor, std::filesystem::path path,
+              std::shared_ptr<sim::FaultBoard> faults, double drive_s, bool lockstep);
   std::string answer(const std::string& command, double now_s);
   std::string set(const std::string& text, double now_s);
+  Status check(const sim::Fault& fault, double now_s) const;
   std::string clear(const std::string& number, double now_s);
 
-  const int descriptor_;
+  const FileDescriptor descriptor_;
   const std::filesystem::path path_;
   const std::shared_ptr<sim::FaultBoard> faults_;
+  const double drive_s_;
   const bool lockstep_;
 };
 

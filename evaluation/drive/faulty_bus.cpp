@@ -27,13 +27,13 @@ bool is_lost(const std::vector<sim::Fault>& faults, sim::Random& random) {
 }  // namespace
 
 FaultyBus::FaultyBus(std::unique_ptr<can::Bus> bus, std::shared_ptr<const sim::FaultBoard> faults,
-                     const drivers::Clock& clock, Time drive_start)
+                     const drivers::Clock& clock, Time drive_start, uint64_t seed)
     : bus_(std::move(bus)),
       faults_(std::move(faults)),
       clock_(clock),
       drive_start_(drive_start),
-      send_random_(sim::seed_for(0, "flooded send")),
-      receive_random_(sim::seed_for(0, "flooded receive")) {}
+      send_random_(sim::seed_for(seed, "flooded send")),
+      receive_random_(sim::seed_for(seed, "flooded receive")) {}
 
 std::vector<sim::Fault> FaultyBus::active(Time time) const {
   return faults_->active(sim::FaultInput::kBus, to_seconds(time - drive_start_));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <vector>
@@ -17,9 +18,9 @@ namespace bevloc::evaluation {
 /// Passes everything on while there is no fault. Threads: as Bus demands.
 class FaultyBus final : public can::Bus {
  public:
-  /// The clock must outlive the bus.
+  /// The clock must outlive the bus. `seed`: that of the drive; chooses the frames that are lost.
   FaultyBus(std::unique_ptr<can::Bus> bus, std::shared_ptr<const sim::FaultBoard> faults,
-            const drivers::Clock& clock, Time drive_start);
+            const drivers::Clock& clock, Time drive_start, uint64_t seed);
 
   can::SendResult send(const can::Frame& frame, Time now) override;
   std::optional<can::ReceivedFrame> receive() override;

@@ -137,9 +137,12 @@ SimulatedDrive::SimulatedDrive(std::shared_ptr<const sim::World> world,
       map_(sim::with_faults(world_->map, sim::in_drive_time(simulation.faults, simulation.faults),
                             *drive_)) {}
 
+double SimulatedDrive::drive_time_s(double elapsed_s) const {
+  return sim::drive_time_s(elapsed_s, faults_->all(sim::FaultInput::kClock));
+}
+
 Se2 SimulatedDrive::truth_at(double elapsed_s) const {
-  const auto clock_faults = faults_->all(sim::FaultInput::kClock);
-  return drive_->at(sim::drive_time_s(elapsed_s, clock_faults)).map_from_vehicle;
+  return drive_->at(drive_time_s(elapsed_s)).map_from_vehicle;
 }
 
 std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(
@@ -163,6 +166,7 @@ std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(
     mock.timing.readout = kReadout;
     mock.buffers = config.cameras.buffers;
     mock.faults = faults_;
+    mock.fault_seed = sim::seed_for(simulation.seed, "picture faults");
     cameras.push_back(std::make_unique<drivers::MockCamera>(scene, mock, clock));
   }
   return cameras;

@@ -28,6 +28,9 @@ class SimulatedDrive {
   const HdMap& map() const { return map_; }
   /// The vehicle's pose when the appliance's clock shows this time since the drive's start.
   Se2 truth_at(double elapsed_s) const;
+  /// Whether the planned drive is over. A suspension that is set while the drive runs makes it end
+  /// before the duration of the configuration.
+  bool is_over(double elapsed_s) const { return drive_time_s(elapsed_s) >= drive_->duration_s(); }
   std::shared_ptr<const sim::Drive> drive() const { return drive_; }
   /// The faults of the configuration. More may be set while the drive runs.
   std::shared_ptr<sim::FaultBoard> faults() const { return faults_; }
@@ -40,6 +43,7 @@ class SimulatedDrive {
 
  private:
   SimulatedDrive(std::shared_ptr<const sim::World> world, const SimulationConfig& simulation);
+  double drive_time_s(double elapsed_s) const;
 
   std::shared_ptr<const sim::World> world_;
   std::shared_ptr<const sim::Drive> drive_;

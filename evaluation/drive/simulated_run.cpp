@@ -35,7 +35,7 @@ class LatencyRecorder {
     constexpr double kMostCorrectionsPerSecond = 100.0;
     latencies_ms_.reserve(static_cast<size_t>(duration_s * kMostCorrectionsPerSecond) + 1);
   }
-  void add(Duration latency) { latencies_ms_.push_back(1e3 * to_seconds(latency)); }
+  void add(Duration latency) { latencies_ms_.push_back(to_milliseconds(latency)); }
   LatencyReport report() const {
     return {quantile_of(latencies_ms_, 0.5), quantile_of(latencies_ms_, 0.99)};
   }
@@ -99,8 +99,10 @@ Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& co
   if (!drive) return tl::unexpected(drive.error());
   const auto hanging = drive->faults()->all(sim::FaultInput::kThread);
   if (options.fast && !hanging.empty()) {
-    return fail("simulation.faults: found {} in lockstep, wanted threads that run (no --fast)",
-                sim::info_of(hanging.front().kind).name);
+    return fail(
+        "simulation.faults: found {} with --fast, wanted a drive without, because one thread runs "
+        "everything",
+        sim::info_of(hanging.front().kind).name);
   }
   auto run =
       std::unique_ptr<SimulatedRun>(new SimulatedRun(config, rig, options, std::move(*drive)));
@@ -133,7 +135,8 @@ Status SimulatedRun::connect() {
   }
   firmware::Hardware hardware{
       drive_.make_cameras(config_, rig_, clock_, drive_start_, options_.pictures),
-      std::make_unique<FaultyBus>(std::move(*own_bus), drive_.faults(), clock_, drive_start_),
+      std::make_unique<FaultyBus>(std::move(*own_bus), drive_.faults(), clock_, drive_start_,
+                                  config_.simulation->seed),
       &clock_};
   auto recorder = firmware::open_recorder(config_, rig_, drive_.map(), options_.fast, clock_.now());
   if (!recorder) return tl::unexpected(recorder.error());
@@ -169,7 +172,8 @@ Status SimulatedRun::connect() {
   }
   const std::filesystem::path& socket = config_.simulation->fault_socket;
   if (socket.empty()) return {};
-  auto server = FaultServer::open(socket, drive_.faults(), options_.fast);
+  auto server =
+      FaultServer::open(socket, drive_.faults(), drive_.drive()->duration_s(), options_.fast);
   if (!server) return tl::unexpected(server.error());
   fault_server_ = std::move(*server);
   return {};
@@ -205,7 +209,7 @@ void SimulatedRun::run(const StopWhen& stop) {
     }
     const double time_s = to_seconds(now - drive_start_);
     if (fault_server_) fault_server_->step(time_s);
-    const bool last = time_s >= duration_s || stop(supervisor.view());
+    const bool last = time_s >= duration_s || drive_.is_over(time_s) || stop(supervisor.view());
     if (last) {
       drive_.faults()->release();
     } else {

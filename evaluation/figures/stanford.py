@@ -36,17 +36,21 @@ class Diagram(TypedDict):
     """One element of the output of `bevloc eval integrity --json`."""
 
     name: str
+    drives: int
+    drives_with_pose: int
     valid_poses: int
     axes: list[Axis]
 
 
 def data_of(document: Any, file: Path) -> list[Diagram]:
     """The diagrams with poses of the file with this JSON. SourceError if it has none."""
+    keys = {"valid_poses", "drives", "drives_with_pose"}
     if not isinstance(document, list) or not all(
-        isinstance(part, dict) and "valid_poses" in part for part in document
+        isinstance(part, dict) and keys <= part.keys() for part in document
     ):
         raise SourceError(
-            f"{file}: found no diagrams, wanted the output of `bevloc eval integrity --json`"
+            f"{file}: found no diagrams with {', '.join(sorted(keys))}, wanted the output of "
+            "`bevloc eval integrity --json`"
         )
     drawn: list[Diagram] = [diagram for diagram in document if diagram["valid_poses"] > 0]
     if not drawn:
@@ -78,6 +82,11 @@ def draw_axis(axes: Axes, data: Axis) -> None:
     axes.set_ylabel(f"protection level, {data['unit']}", fontsize=9, color=style.INK)
 
 
+def heading(diagram: Diagram) -> str:
+    drives = f"{diagram['drives_with_pose']} of {diagram['drives']} drives had a pose"
+    return f"{diagram['name']}: {diagram['valid_poses']} valid poses, {drives}"
+
+
 def draw(data: list[Diagram], path: Path) -> None:
     """Draws a row of three panels per diagram. Below the diagonal the error is beyond the
     protection level. In the red part it is beyond the alert limit too."""
@@ -86,9 +95,7 @@ def draw(data: list[Diagram], path: Path) -> None:
     figure = style.new_figure(width, row * len(data))
     for number, diagram in enumerate(data):
         top = number * row
-        style.add_text(
-            figure, 12, top + 28, f"{diagram['name']}: {diagram['valid_poses']} valid poses", 12
-        )
+        style.add_text(figure, 12, top + 28, heading(diagram), 12)
         for column, axis in enumerate(diagram["axes"]):
             left = LEFT + column * (PANEL + GAP)
             draw_axis(style.add_axes(figure, left, top + TOP, PANEL, PANEL), axis)

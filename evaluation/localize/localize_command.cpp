@@ -134,9 +134,10 @@ void LocalizeCommand::declare(CLI::App& app) {
                    "Folder with a picture of each camera, such as front_left.jpg or back.png")
       ->required();
   localize
-      ->add_option("--prior", prior_,
-                   "About where they were taken: X,Y,YAW (metres and degrees in the map frame) or "
-                   "LATITUDE,LONGITUDE,HEADING (degrees)")
+      ->add_option(
+          "--prior", prior_,
+          "Approximate pose of the vehicle: X,Y,YAW (metres and degrees in the map frame) or "
+          "LATITUDE,LONGITUDE,HEADING (degrees)")
       ->required();
   add_choice(
       *localize, "--frame", frame_,

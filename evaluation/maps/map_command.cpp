@@ -90,18 +90,21 @@ void MapCommand::declare(CLI::App& app) {
   imports->add_option("out", out_, "Map to write: .bvm or .geojson")
       ->required()
       ->check(output_file());
-  imports->add_option("--classes", classes_, "YAML file: what kinds of lines become");
+  imports->add_option("--classes", classes_,
+                      "YAML file that gives kinds of lines a class (docs/maps.md)");
   imports->add_option("--origin", origin_,
                       "LATITUDE,LONGITUDE of the file's point (0, 0), where x points to true east");
   imports->add_flag("--bvm-1", version_1_,
-                    "Write a .bvm of version 1, for releases that know no tiles");
+                    "Write a .bvm of version 1, for releases that cannot read tiles");
   imports->add_option("--report", json_, "Write the report to this JSON file")
       ->check(output_file());
   imports->add_option("--picture", picture_, "Draw the map to this PNG file")->check(output_file());
   auto* infos = add("info", "Say what a map contains", &MapCommand::info);
-  infos->add_option("--json", json_, "Write it to this JSON file, too")->check(output_file());
+  infos->add_option("--json", json_, "Write the figures to this JSON file, too")
+      ->check(output_file());
   auto* checks = add("check", "Look for what is wrong with a map", &MapCommand::check);
-  checks->add_option("--json", json_, "Write it to this JSON file, too")->check(output_file());
+  checks->add_option("--json", json_, "Write the faults to this JSON file, too")
+      ->check(output_file());
   auto* renders = add("render", "Draw a map with legend and scale", &MapCommand::render);
   renders->add_option("out", out_, "PNG file to write")->required()->check(output_file());
   renders->add_option("--pixels", size_px_, "Width and height")
@@ -201,8 +204,8 @@ Status MapCommand::diff() const {
   if (is_known(first->origin) != is_known(second->origin)) {
     fmt::print(
         stderr,
-        "{}: this map does not say where on earth it is, so that its coordinates are compared "
-        "with those of the other one as they are; --origin of an import gives it a place\n",
+        "{}: this map does not say where on earth it is, so its coordinates are compared as if "
+        "both maps had the same origin; `bevloc map import --origin` gives a map its place\n",
         is_known(first->origin) ? other_ : in_);
   }
   const MapDiff difference = compare(*first, *second);

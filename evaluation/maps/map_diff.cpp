@@ -29,23 +29,21 @@ std::vector<MapElement> moved_elements(const HdMap& map, const HdMap& other) {
   return elements;
 }
 
-/// Calls visit(from, to) for all pieces of an element. The last edge of a ring closes it.
+/// Calls visit(from, to) for all pieces of an element.
 template <typename Visit>
 void for_each_piece(const MapElement& element, Visit visit) {
-  std::vector<Eigen::Vector2d> points = element.points;
-  const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing;
-  if (is_ring && points.size() > 2) points.push_back(points.front());
-  for (size_t i = 0; i + 1 < points.size(); ++i) {
-    const Eigen::Vector2d along = points[i + 1] - points[i];
+  for (size_t i = 0; i < segment_count(element); ++i) {
+    const Eigen::Vector2d& from = element.points[i];
+    const Eigen::Vector2d along = segment_end(element, i) - from;
     const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / kPiece_m)));
     for (int piece = 0; piece < pieces; ++piece) {
-      visit(Eigen::Vector2d(points[i] + along * piece / pieces),
-            Eigen::Vector2d(points[i] + along * (piece + 1) / pieces));
+      visit(Eigen::Vector2d(from + along * piece / pieces),
+            Eigen::Vector2d(from + along * (piece + 1) / pieces));
     }
   }
 }
 
-using OfClasses = std::array<LineNeighbours, kClassCount>;
+using OfClasses = std::array<LineNeighbours, kElementClasses>;
 
 void add_lines(const std::vector<MapElement>& elements, OfClasses& lines) {
   for (const MapElement& element : elements) {
@@ -90,7 +88,7 @@ MapDiff compare(const HdMap& first, const HdMap& second) {
 std::string text_of(const MapDiff& diff) {
   std::string text = fmt::format("{:<22} {:>11} {:>11} {:>13} {:>13}\n", "", "first", "second",
                                  "only in first", "only in second");
-  for (size_t c = 0; c < kClassCount; ++c) {
+  for (size_t c = 0; c < kElementClasses; ++c) {
     const MapDiff::OfClass& of_class = diff.classes[c];
     text += fmt::format("{:<22} {:9.1f} m {:9.1f} m {:11.1f} m {:11.1f} m\n",
                         name_of(static_cast<ElementClass>(c)), of_class.first_m, of_class.second_m,
@@ -101,7 +99,7 @@ std::string text_of(const MapDiff& diff) {
 
 nlohmann::json json_of(const MapDiff& diff) {
   nlohmann::json json;
-  for (size_t c = 0; c < kClassCount; ++c) {
+  for (size_t c = 0; c < kElementClasses; ++c) {
     const MapDiff::OfClass& of_class = diff.classes[c];
     json[std::string(name_of(static_cast<ElementClass>(c)))] = {
         {"first_m", of_class.first_m},

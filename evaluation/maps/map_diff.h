@@ -27,7 +27,7 @@ struct MapDiff {
     Eigen::Vector2d to;
     enum class In : uint8_t { kBoth, kOnlyFirst, kOnlySecond } in;
   };
-  std::array<OfClass, kClassCount> classes{};
+  std::array<OfClass, kElementClasses> classes{};
   std::vector<Piece> pieces;  ///< about 1 m long
 };
 

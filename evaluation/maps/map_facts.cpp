@@ -121,7 +121,7 @@ std::string text_of(const GeoOrigin& origin, int decimals) {
 
 std::string text_of(const MapFacts& facts) {
   std::string text = fmt::format("{:<22} {:>8} {:>8} {:>11}\n", "", "elements", "points", "length");
-  for (size_t c = 0; c < kClassCount; ++c) {
+  for (size_t c = 0; c < kElementClasses; ++c) {
     const auto& of_class = facts.classes[c];
     text += fmt::format("{:<22} {:8} {:8} {:9.1f} m\n", name_of(static_cast<ElementClass>(c)),
                         of_class.elements, of_class.points, of_class.length_m);
@@ -135,7 +135,7 @@ std::string text_of(const MapFacts& facts) {
 
 nlohmann::json json_of(const MapFacts& facts) {
   nlohmann::json classes;
-  for (size_t c = 0; c < kClassCount; ++c) {
+  for (size_t c = 0; c < kElementClasses; ++c) {
     const auto& of_class = facts.classes[c];
     classes[std::string(name_of(static_cast<ElementClass>(c)))] = {{"elements", of_class.elements},
                                                                    {"points", of_class.points},

@@ -12,8 +12,6 @@
 
 namespace bevloc::evaluation {
 
-inline constexpr size_t kClassCount = 3;
-
 struct MapFacts {
   struct OfClass {
     size_t elements = 0;
@@ -21,7 +19,7 @@ struct MapFacts {
     double length_m = 0.0;
   };
   GeoOrigin origin;
-  std::array<OfClass, kClassCount> classes{};  ///< in the order of ElementClass
+  std::array<OfClass, kElementClasses> classes{};  ///< in the order of ElementClass
   size_t lanes = 0;
   double lanes_m = 0.0;
   Eigen::Vector2d low = Eigen::Vector2d::Zero();  ///< corners of the box around all elements, m

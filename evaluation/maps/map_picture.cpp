@@ -99,11 +99,11 @@ Status write_map_picture(const HdMap& map, int size_px, const std::string& path)
   MapSheet sheet(facts.low, facts.high, size_px);
   for (const Lane& lane : map.lanes) sheet.line(lane.centerline, kLaneColor, 1);
   for (const MapElement& element : map.elements) {
-    const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing;
-    sheet.line(element.points, class_color(element.element_class), sheet.line_width_px(), is_ring);
+    sheet.line(element.points, class_color(element.element_class), sheet.line_width_px(),
+               is_ring(element.element_class));
   }
   sheet.title(fmt::format("{}, origin {}", map.name, text_of(map.origin, 5)));
-  for (size_t c = 0; c < kClassCount; ++c) {
+  for (size_t c = 0; c < kElementClasses; ++c) {
     const auto element_class = static_cast<ElementClass>(c);
     sheet.legend(fmt::format("{}: {}, {:.0f} m", name_of(element_class), facts.classes[c].elements,
                              facts.classes[c].length_m),

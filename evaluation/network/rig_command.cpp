@@ -36,7 +36,8 @@ PerAxis ratio_of(const PerAxis& a, const PerAxis& b) {
 }  // namespace
 
 void RigCommand::declare(CLI::App& eval) {
-  auto* rig = eval.add_subcommand("rig", "Say what a rig costs against the simulator's own");
+  auto* rig = eval.add_subcommand(
+      "rig", "Compare the accuracy with a rig with that of the simulator's own");
   auto* drawn =
       rig->add_option("--random", drawn_seed_, "Draw a rig with this seed, instead of a file")
           ->check(whole_number());

@@ -5,6 +5,7 @@
 
 #include "common/cameras.h"
 #include "common/jpeg.h"
+#include "common/rgb_conversion.h"
 #include "firmware/recording/topics.h"
 
 namespace bevloc::evaluation {
@@ -125,19 +126,6 @@ Result<drivers::Frame> read_frame(Recording& recording, const MessagePlace& plac
   return frame_of(*message, camera, exposure_start(recording, *message), std::move(*buffer));
 }
 
-RgbImage copy_of(const ImageView& view) {
-  RgbImage image(view.width, view.height);
-  const size_t bytes = view.format == PixelFormat::kRgb24 ? 3 : 1;
-  for (int row = 0; row < view.height; ++row) {
-    const uint8_t* from = view.planes[0].data + row * view.planes[0].stride_bytes;
-    uint8_t* to = image.row(row);
-    for (size_t i = 0; i < 3 * static_cast<size_t>(view.width); ++i) {
-      to[i] = from[bytes == 3 ? i : i / 3];
-    }
-  }
-  return image;
-}
-
 }  // namespace
 
 PlayedCamera::PlayedCamera(Recording& recording, int camera, int width_px, int height_px,
@@ -220,8 +208,6 @@ Result<RgbImage> picture_at(Recording& recording, int camera, const MessagePlace
                                 view.bytes_used);
     return decode_jpeg(jpeg, fmt::format("camera {}", kCameraNames[camera]));
   }
-  const bool yuv = view.format != PixelFormat::kRgb24 && can_encode_jpeg(view.format);
-  if (!yuv) return copy_of(view);
   RgbImage image(view.width, view.height);
   convert_to_rgb(view, image);
   return image;

@@ -14,7 +14,7 @@ void RecordCommand::declare(CLI::App& app) {
       ->check(name_of("a folder"))
       ->capture_default_str();
   record->add_flag("--raw", raw_, "Record the images without loss");
-  record->add_option("options", rest_, "After --: more options of bevlocd, such as --fast");
+  record->add_option("options", rest_, "Further options of bevlocd, after --, such as --fast");
   record->footer(
       "Examples:\n"
       "  bevloc record --config my_config.yaml --out recording\n"

@@ -73,7 +73,7 @@ Status read_solutions(Recording& recording, ReportData& data) {
     if (is_new && solution->capture_clock_ns() != 0) {
       const Duration latency =
           time - Time(Duration(static_cast<int64_t>(solution->capture_clock_ns())));
-      data.latency_ms.push_back({time_s, 1e3 * to_seconds(latency)});
+      data.latency_ms.push_back({time_s, to_milliseconds(latency)});
     }
     capture_ns = solution->capture_clock_ns();
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base64.h"
 #include "common/cameras.h"
 #include "evaluation/drive/error_statistics.h"
 #include "evaluation/report/charts.h"
@@ -35,23 +36,6 @@ constexpr std::string_view kGrey = "#7a828c";
 template <typename... T>
 void append(std::string& page, fmt::format_string<T...> format, T&&... values) {
   fmt::format_to(std::back_inserter(page), format, std::forward<T>(values)...);
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) {
-      group = group << 8U | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0U);
-    }
-    for (size_t k = 0; k < 4; ++k) {
-      const bool filled = i + k <= bytes.size();
-      text += filled ? kDigits[group >> (18U - 6U * k) & 63U] : '=';
-    }
-  }
-  return text;
 }
 
 Series series_of(const ReportData& data, std::string name, std::string_view color,
@@ -145,7 +129,7 @@ void add_accuracy(std::string& page, const ReportData& data) {
                        data.length_s);
   }
   page += line_chart(
-      "what the appliance said of valid poses", "m",
+      "uncertainty of valid poses", "m",
       {series_of(data, "sigma", kGrey, [](const PosedCycle& cycle) { return cycle.sigma_m; }),
        series_of(data, "longitudinal protection level", kBlue,
                  [](const PosedCycle& cycle) { return cycle.protection_longitudinal_m; }),

@@ -13,7 +13,7 @@ namespace {
 
 /// Processor time of this thread. Other programs do not affect it.
 double processor_time_ms() {
-  return 1e3 * to_seconds(read_clock(CLOCK_THREAD_CPUTIME_ID));
+  return to_milliseconds(read_clock(CLOCK_THREAD_CPUTIME_ID));
 }
 
 /// A solver with its input and its latest result.

@@ -1,7 +1,6 @@
 #include "firmware/config/config.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -51,16 +50,27 @@ CameraConfig read_cameras(YamlMap yaml, const std::filesystem::path& folder) {
   if (synchronizer.wait < synchronizer.tolerance) {
     yaml.reject("wait_ms", "less than tolerance_ms", "at least tolerance_ms");
   }
-  const double rate_hz =
-      cameras.driver == CameraDriver::kMock ? cameras.rate_hz : cameras.devices.rate_hz;
-  if (to_seconds(synchronizer.tolerance) * rate_hz >= 1.0) {
-    yaml.reject("tolerance_ms", "a frame period or more, so each second frame would be too late",
-                "less than a frame period");
-  }
   return cameras;
 }
 
-/// Reads the path of the map file, which is empty for a procedural town.
+/// Checks the rate of the cameras against the rate of their trigger, and the tolerance against
+/// both.
+void check_rates(YamlMap& yaml, const CameraConfig& cameras, const GpioConfig& gpio) {
+  const double camera_hz =
+      cameras.driver == CameraDriver::kMock ? cameras.rate_hz : cameras.devices.rate_hz;
+  const double trigger_hz = gpio.trigger ? 1.0 / to_seconds(gpio.trigger->timing.period) : 0.0;
+  if (camera_hz > 0.0 && camera_hz < (1.0 - 1e-6) * trigger_hz) {
+    yaml.reject("rate_hz",
+                fmt::format("{:.6g} beside {:.6g} in gpio.trigger.rate_hz", camera_hz, trigger_hz),
+                "no key, because the trigger sets the rate, or at least the rate of the trigger");
+  }
+  if (to_seconds(cameras.synchronizer.tolerance) * std::max(camera_hz, trigger_hz) >= 1.0) {
+    yaml.reject("tolerance_ms", "a frame period or more, so each second frame would be too late",
+                "less than a frame period");
+  }
+}
+
+/// Reads the path of the map file. Returns an empty path for a procedural town.
 std::filesystem::path read_map(YamlMap yaml, CameraDriver camera_driver,
                                const std::filesystem::path& folder,
                                const SimulationReader* simulation) {
@@ -85,14 +95,15 @@ HypothesisAxis read_axis(YamlMap& yaml, std::string_view range_key, std::string_
   axis.range = yaml.optional<double>(range_key, fallback.range, between(0.1, max_range));
   axis.step = yaml.optional<double>(step_key, fallback.step, between(0.01, 5.0));
   if (kLeastSteps * axis.step > axis.range * (1.0 + 1e-9)) {
-    yaml.reject(step_key, "more than a quarter of the range",
-                "at most a quarter, because the best of few places always lies at the border");
+    yaml.reject(
+        step_key, "more than a quarter of the range",
+        "at most a quarter, because of few hypotheses the best one is always at the border");
   }
   return axis;
 }
 
 /// Checks the step of an axis. `axis` and `max_range` are in the unit of the solver. One unit of
-/// the file is `per_unit` of them.
+/// the solver is `per_unit` units of the file.
 void check_axis(YamlMap& yaml, std::string_view step_key, const HypothesisAxis& axis,
                 double max_range, double per_unit) {
   // A range or a step that is wrong by itself was reported when it was read.
@@ -152,13 +163,13 @@ std::optional<SecocConfig> read_secoc(YamlMap& can, CanDriver driver,
                      .starts_file = path_of(*yaml, "starts_file", folder)};
 }
 
-/// Whether the driver is one for vehicles. There, poses on a mock bus would reach nobody, while the
-/// status would say that CAN is well.
+/// Whether the driver is for real cameras. With real cameras and a mock bus, no pose would reach
+/// the vehicle, but the status would show no fault of CAN.
 bool is_real(CameraDriver driver) {
   return driver == CameraDriver::kV4l2 || driver == CameraDriver::kLibcamera;
 }
 
-/// Reads the path of the DBC file, which is empty if the key is missing.
+/// Reads the path of the DBC file. Returns an empty path if the key is missing.
 std::filesystem::path read_dbc_file(YamlMap& vehicle, const ConfigFiles& files) {
   const std::string name = read_dbc_name(vehicle);
   if (name.empty()) return {};
@@ -234,7 +245,7 @@ TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
 HealthLimits read_health(std::optional<YamlMap> yaml) {
   HealthLimits limits;
   if (!yaml) return limits;
-  // The bounds exclude limits with which any pose would be valid.
+  // The bounds exclude limits that are so wide that every pose would be valid.
   const auto timeout = between(10.0, 10'000.0);
   limits.odometry_timeout = optional_milliseconds(*yaml, "odometry_timeout_ms",
                                                   limits.odometry_timeout, between(10.0, 1000.0));
@@ -253,7 +264,7 @@ HealthLimits read_health(std::optional<YamlMap> yaml) {
                              between(0.01, kFreewayAlertLimits.x()));
   limits.lateral_sigma_m = yaml->optional<double>("max_lateral_sigma_m", limits.lateral_sigma_m,
                                                   between(0.01, kFreewayAlertLimits.y()));
-  // The limit is rounded, because in degrees it is 1.5000000000000002.
+  // The limit is rounded, because its value in degrees is 1.5000000000000002.
   const double most_yaw_sigma_deg = std::round(degrees(kFreewayAlertLimits.z()) * 1e9) / 1e9;
   limits.yaw_sigma_rad = radians(yaml->optional<double>(
       "max_yaw_sigma_deg", degrees(limits.yaw_sigma_rad), between(0.01, most_yaw_sigma_deg)));
@@ -283,7 +294,7 @@ void read_online_calibration(std::optional<YamlMap> yaml, const std::filesystem:
   if (yaml->has("file")) config.learned_calibration_file = path_of(*yaml, "file", folder);
 }
 
-/// Reads the section `gnss`, which excludes GNSS of the vehicle's own bus.
+/// Reads the section `gnss`. Rejects it if the vehicle's own bus carries GNSS, too.
 std::optional<GnssConfig> read_gnss_source(YamlMap& yaml, const Config& config) {
   auto section = yaml.optional_map("gnss");
   if (!section) return std::nullopt;
@@ -332,6 +343,7 @@ Config read_config(YamlMap& yaml, const ConfigFiles& files, const SimulationRead
                       "no section gpio, because a simulated drive has no lines");
     }
   }
+  check_rates(cameras, config.cameras, config.gpio);
   config.clock = read_clock_section(yaml.optional_map("clock"));
   config.can.sends_clock = config.clock.source != can::TimeSource::kFreeRunning;
   if (config.cameras.driver == CameraDriver::kMock) {
@@ -352,23 +364,27 @@ Config read_config(YamlMap& yaml, const ConfigFiles& files, const SimulationRead
 Result<Config> load_config_without_manifest(const std::filesystem::path& file,
                                             const SimulationReader* simulation,
                                             const ConfigFiles& files) {
-  Result<YamlMap> yaml = YamlMap::read_file(file);
+  KeptFiles kept;
+  kept.keep(file);
+  const Result<std::string> text = kept.bytes_of(file);
+  if (!text) return tl::unexpected(text.error());
+  Result<YamlMap> yaml = YamlMap::parse(*text, file.string());
   if (!yaml) return tl::unexpected(yaml.error());
   Config config = read_config(*yaml, files, simulation);
   config.file = file;
   if (Status finished = yaml->finish(); !finished) return tl::unexpected(finished.error());
+  for (const auto* used : {&config.rig_file, &config.can.dbc_file, &config.manifest_file}) {
+    kept.keep(*used);
+  }
+  config.kept_files = std::move(kept);
   return config;
 }
 
 Result<Config> load_config(const std::filesystem::path& file, const SimulationReader* simulation) {
   auto config = load_config_without_manifest(file, simulation,
                                              {.folder = file.parent_path(), .dbc_file = {}});
-  if (!config || config->manifest_file.empty()) return config;
-  const std::array used{file, config->rig_file, config->model_file, config->map_file,
-                        config->can.dbc_file};
-  if (Status same = check_manifest(config->manifest_file, used); !same) {
-    return tl::unexpected(same.error());
-  }
+  if (!config) return config;
+  if (Status same = check_manifest_of(*config); !same) return tl::unexpected(same.error());
   return config;
 }
 

@@ -17,6 +17,7 @@
 #include "firmware/config/clock_config.h"
 #include "firmware/config/gnss_config.h"
 #include "firmware/config/gpio_config.h"
+#include "firmware/config/kept_files.h"
 #include "firmware/config/live_config.h"
 #include "firmware/config/realtime_config.h"
 #include "firmware/config/record_config.h"
@@ -89,6 +90,8 @@ struct Config {
   std::filesystem::path map_file;                  ///< empty for a procedural town
   std::filesystem::path model_file;
   std::filesystem::path manifest_file;  ///< empty if no checksums are compared
+  /// This configuration, the rig, the DBC file and the manifest as load_config() has read them.
+  KeptFiles kept_files;
   SolverConfig solver;
   CanConfig can;
   std::optional<GnssConfig> gnss;  ///< empty if GNSS comes on the CAN bus

@@ -8,10 +8,6 @@
 
 namespace bevloc::firmware {
 
-inline Duration from_milliseconds(double milliseconds) {
-  return from_seconds(1e-3 * milliseconds);
-}
-
 inline Duration require_milliseconds(YamlMap& yaml, std::string_view key,
                                      const Wanted<double>& wanted) {
   return from_milliseconds(yaml.require<double>(key, wanted));
@@ -19,7 +15,7 @@ inline Duration require_milliseconds(YamlMap& yaml, std::string_view key,
 
 inline Duration optional_milliseconds(YamlMap& yaml, std::string_view key, Duration fallback,
                                       const Wanted<double>& wanted) {
-  return from_milliseconds(yaml.optional<double>(key, 1e3 * to_seconds(fallback), wanted));
+  return from_milliseconds(yaml.optional<double>(key, to_milliseconds(fallback), wanted));
 }
 
 }  // namespace bevloc::firmware

@@ -1,6 +1,7 @@
 #include "firmware/config/manifest.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "common/files.h"
@@ -74,6 +75,22 @@ Status check_manifest(const std::filesystem::path& manifest,
         manifest.string(), file.string());
   }
   return {};
+}
+
+Status check_manifest_of(const Config& config) {
+  const std::filesystem::path& manifest = config.manifest_file;
+  if (manifest.empty()) return {};
+  const auto now = read_file(manifest);
+  const auto kept = config.kept_files.bytes_of(manifest);
+  if (now && kept && *now != *kept) {
+    return fail(
+        "{}: found a manifest that has changed since bevlocd read it, wanted the same one; restart "
+        "bevlocd, so that it reads all files again",
+        manifest.string());
+  }
+  const std::array used{config.file, config.rig_file, config.model_file, config.map_file,
+                        config.can.dbc_file};
+  return check_manifest(manifest, used);
 }
 
 }  // namespace bevloc::firmware

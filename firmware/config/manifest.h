@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/result.h"
+#include "firmware/config/config.h"
 
 namespace bevloc::firmware {
 
@@ -26,5 +27,10 @@ Result<std::vector<ManifestEntry>> parse_manifest(std::string_view text, const s
 /// its checksum, and each of `used` is in it. Empty paths in `used` are ignored.
 Status check_manifest(const std::filesystem::path& manifest,
                       std::span<const std::filesystem::path> used);
+
+/// Checks the files of a configuration against the manifest that it names, if it names one. Fails
+/// also if the manifest has changed since load_config() read it, because it then no longer says
+/// whether the files in memory are the right ones.
+Status check_manifest_of(const Config& config);
 
 }  // namespace bevloc::firmware

@@ -55,7 +55,7 @@ class SignalGroup {
     return signal(key, quantity, unit);
   }
 
-  /// Whether a bound signal has a sign. True for one that is not bound.
+  /// Whether a bound signal has a sign. Returns true for a signal that is not bound.
   bool has_sign(size_t signal) const {
     if (message_.empty() || signal >= binder_->binding().signals.size()) return true;
     return binder_->binding().signals[signal].has_sign;
@@ -125,9 +125,9 @@ can::BoundWheels read_wheels(YamlMap yaml, can::VehicleBinder* binder) {
   const bool have_signs = std::ranges::all_of(
       wheels.wheels, [&group](const auto& wheel) { return group.has_sign(wheel.signal); });
   if (!wheels.backward && !have_signs) {
-    group.yaml().reject("signals",
-                        fmt::format("speeds that do not reach {} m/s", can::kSignedSpeed_mps),
-                        "backward, which says when the vehicle reverses");
+    group.yaml().reject(
+        "signals", fmt::format("speeds that do not reach {} m/s", can::kSignedSpeed_mps),
+        "the key backward, which names the signal that says when the vehicle reverses");
   }
   return wheels;
 }
@@ -143,7 +143,7 @@ can::BoundYawRate read_yaw_rate(YamlMap yaml, can::VehicleBinder* binder) {
   if (!yaw_rate.negative && !group.has_sign(yaw_rate.signal)) {
     group.yaml().reject(
         "signal", fmt::format("a yaw rate that does not reach {} rad/s", can::kSignedYawRate_radps),
-        "negative, which says when the vehicle turns to the negative side");
+        "the key negative, which names the signal that says when the yaw rate is negative");
   }
   return yaw_rate;
 }
@@ -233,11 +233,13 @@ can::ProtectionRequest read_protection_request(YamlMap& yaml) {
         yaml.require<uint32_t>("highest_counter", between(uint32_t{1}, uint32_t{255}));
   }
   if (yaml.has("checksum") != has_checksum) {
-    yaml.reject("algorithm", has_checksum ? "no checksum" : "a checksum without its algorithm",
-                "checksum with xor, crc8_sae_j1850 or crc8_h2f, and only with them");
+    yaml.reject("algorithm",
+                has_checksum ? "no key checksum" : "the key checksum without its algorithm",
+                "the key checksum if and only if algorithm is xor, crc8_sae_j1850 or crc8_h2f");
   }
   if (is_profile && (yaml.has("counter") || yaml.has("highest_counter"))) {
-    yaml.reject("algorithm", "a profile with a counter of its own", "no counter, highest_counter");
+    yaml.reject("algorithm", "a profile that has its own counter, beside another counter",
+                "neither the key counter nor highest_counter");
   }
   read_data_ids(yaml, request);
   return request;

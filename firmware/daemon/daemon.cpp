@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "firmware/config/config_key.h"
+#include "firmware/config/manifest.h"
 #include "firmware/devices/camera_factory.h"
 #include "firmware/devices/fault_line.h"
 #include "firmware/devices/gpio_lines.h"
@@ -69,6 +70,22 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
   return true;
 }
 
+/// Shows an appliance on the live page, if there is one, for the life of this object.
+class LiveView {
+ public:
+  LiveView(LiveServer* live, Appliance& appliance, const Rig& rig) : live_(live) {
+    if (live_ != nullptr) live_->attach(appliance, rig);
+  }
+  ~LiveView() {
+    if (live_ != nullptr) live_->detach();
+  }
+  LiveView(const LiveView&) = delete;
+  LiveView& operator=(const LiveView&) = delete;
+
+ private:
+  LiveServer* live_;
+};
+
 /// Runs a complete appliance until the ignition goes off (true) or the daemon shall end (false).
 bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
                    const Recorder* recorder, Base& base, const Config& config,
@@ -91,11 +108,11 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
   ClockWatch clock_watch(config.clock);
   ShownState shown;
   bool ignition = true;
-  if (base.live) base.live->attach(appliance, rig);
+  const LiveView live_view(base.live.get(), appliance, rig);
   run_threads(appliance, base.realtime, nullptr, [&](Time now) {
     supervisor.step(now);
     appliance.estimation().note_clock(clock_watch.step());
-    log.note(supervisor.view());
+    log.note(supervisor.view(), now);
     const Snapshot counters = snapshot();
     errors.note(counters, now);
     if (base.live) base.live->publish({Phase::kRunning, now, counters, supervisor.view()});
@@ -108,7 +125,6 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
     if (!goes_on) watching.request_stop();  // the fault line becomes active
     return goes_on;
   });
-  if (base.live) base.live->detach();
   if (ignition) supervisor.finish();
   if (trigger != nullptr) trigger->stop();
   log_totals(snapshot());
@@ -136,6 +152,8 @@ void serve_page(const Config& config, Base& base) {
 /// Opens the remaining devices and runs an appliance on them. Returns what run_appliance() returns.
 Result<bool> start_and_run(const Config& config, const Rig& rig, Base& base,
                            const DaemonHost& host) {
+  // The appliance reads the model now, and an upgrade may have replaced it while it was off.
+  if (Status same = check_manifest_of(config); !same) return tl::unexpected(same.error());
   std::unique_ptr<TriggerThread> trigger;
   if (config.gpio.trigger) {
     auto started = TriggerThread::start(*config.gpio.trigger, host.gpio, base.clock, base.realtime);

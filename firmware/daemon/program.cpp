@@ -12,8 +12,10 @@
 #include "common/option_checks.h"
 #include "common/output.h"
 #include "common/version.h"
+#include "firmware/config/config_key.h"
 #include "firmware/devices/config_check.h"
 #include "firmware/recording/recording_ring.h"
+#include "pipeline/calibration/rig_yaml.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -84,6 +86,13 @@ Status override_config(const ProgramOptions& options, Config& config) {
   if (!config.live) config.live.emplace();
   if (options.live_port) config.live->port = *options.live_port;
   return {};
+}
+
+Result<Rig> rig_of(const Config& config) {
+  return at_key("calibration.rig",
+                config.kept_files.bytes_of(config.rig_file).and_then([&](const std::string& text) {
+                  return parse_rig(text, config.rig_file.string());
+                }));
 }
 
 void handle_signals() {

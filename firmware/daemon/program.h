@@ -29,6 +29,10 @@ void declare_options(CLI::App& app, ProgramOptions& options);
 /// no recording.
 Status override_config(const ProgramOptions& options, Config& config);
 
+/// Returns the rig that the configuration names, as its file was when load_config() read it. Fails
+/// if the file could not be read or has a mistake.
+Result<Rig> rig_of(const Config& config);
+
 /// Installs the signal handlers. SIGTERM and SIGINT set stop_requested(). SIGHUP is logged and
 /// ignored, because it must not end the localization before LOST is sent.
 void handle_signals();

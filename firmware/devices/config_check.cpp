@@ -6,12 +6,14 @@
 #include "common/writable_folder.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config_key.h"
+#include "firmware/config/localizer_options.h"
 #include "firmware/devices/camera_factory.h"
 #include "firmware/devices/can_bus.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/localization/localizer.h"
+#include "pipeline/map/map_index.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/map/map_summary.h"
-#include "pipeline/network/network.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -42,11 +44,16 @@ Status check_written_file(const char* key, const std::filesystem::path& file) {
       key, file.string(), error.message());
 }
 
-Status check_model(const std::filesystem::path& file, const Rig& rig) {
-  const auto model = Network::load(file, {});
-  if (!model) return tl::unexpected(model.error());
-  const Status fits = check_rig_fits((*model)->rig(), rig);
-  return fits ? fits : fail("{}: {}", file.string(), fits.error().message);
+/// Makes the localizer that the daemon makes, but without a map, and runs its check of network and
+/// solvers.
+Status check_model(const Config& config, const Rig& rig) {
+  const HdMap no_map;
+  const MapIndex index(no_map);
+  const std::string file = config.model_file.string();
+  const auto localizer = Localizer::create(rig, index, file, localizer_options_of(config));
+  if (!localizer) return tl::unexpected(localizer.error());
+  const Status checked = (*localizer)->check();
+  return checked ? checked : fail("{}: {}", file, checked.error().message);
 }
 
 Status check_map(const std::filesystem::path& file) {
@@ -71,7 +78,7 @@ Status check_secoc(const SecocConfig& secoc) {
 Status check_config(const Config& config) {
   const auto rig = at_key("calibration.rig", read_rig(config.rig_file));
   if (!rig) return tl::unexpected(rig.error());
-  const Status model = at_key("model.file", check_model(config.model_file, *rig));
+  const Status model = at_key("model.file", check_model(config, *rig));
   if (!model) return model;
   if (!config.map_file.empty()) {
     if (Status map = at_key("map.file", check_map(config.map_file)); !map) return map;

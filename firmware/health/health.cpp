@@ -1,5 +1,6 @@
 #include "firmware/health/health.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "can/publisher/solution_frames.h"
@@ -12,11 +13,11 @@ constexpr double kSigmasToTrack = 4.0;
 /// A pose without matches is trusted for this long, unless match or GNSS is excluded. In drives
 /// without a fault, shorter times without a match are common.
 constexpr Duration kTrustedDeadReckoning = std::chrono::seconds(3);
-/// A new pose without matches is trusted for a shorter time, because the filter does not know the
-/// bias of the yaw rate yet.
+/// A pose counts as new for kNewPose. Without matches it is trusted for kTrustedNewPose only,
+/// because the filter does not know the bias of the yaw rate yet.
 constexpr Duration kNewPose = std::chrono::seconds(5);
 constexpr Duration kTrustedNewPose = std::chrono::seconds(2);
-/// The publisher sends no pose whose images are older, so state, log and bus agree.
+/// The publisher sends no pose whose images are older than this. So state, log and bus agree.
 constexpr Duration kOldestMatch = can::kMaxCaptureAge;
 
 }  // namespace
@@ -74,13 +75,13 @@ bool Health::is_too_uncertain(const HealthInputs& inputs) const {
          inputs.yaw_sigma_rad > limits_.yaw_sigma_rad;
 }
 
-/// Whether the pose comes from dead reckoning for too long and may be wrong by more than the alert
+/// Whether the pose has come from dead reckoning for too long and its error may exceed the alert
 /// limits.
 bool Health::is_unprotected(const HealthInputs& inputs) const {
   const bool disputed = inputs.verdict.match_contradicts || inputs.verdict.gnss_excluded;
   const bool is_new = inputs.valid_age < kNewPose;
   const Duration undisputed = is_new ? kTrustedNewPose : kTrustedDeadReckoning;
-  const Duration trusted = disputed ? limits_.correction_timeout : undisputed;
+  const Duration trusted = disputed ? std::min(limits_.correction_timeout, undisputed) : undisputed;
   return inputs.correction_age > trusted &&
          (inputs.protection_level.y() > limits_.alert_limit.y() ||
           inputs.protection_level.z() > limits_.alert_limit.z());

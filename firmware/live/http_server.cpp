@@ -15,7 +15,6 @@
 #include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include "firmware/config/live_config.h"
 #include "firmware/live/socket_stream.h"
@@ -57,7 +56,7 @@ httplib::Server::HandlerResponse look_at_request(const httplib::Request& request
   return httplib::Server::HandlerResponse::Unhandled;
 }
 
-Result<Socket> listen_at(const std::string& address, int port) {
+Result<FileDescriptor> listen_at(const std::string& address, int port) {
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE;
   hints.ai_socktype = SOCK_STREAM;
@@ -67,7 +66,7 @@ Result<Socket> listen_at(const std::string& address, int port) {
     return fail("live: {}: found no IP address ({}), wanted one such as 127.0.0.1", address,
                 gai_strerror(code));
   }
-  Socket socket(::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  FileDescriptor socket(::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
   setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
   const bool bound = socket.get() >= 0 &&
@@ -80,7 +79,7 @@ Result<Socket> listen_at(const std::string& address, int port) {
               address, port, std::strerror(error));
 }
 
-int port_of(const Socket& socket) {
+int port_of(const FileDescriptor& socket) {
   sockaddr_storage address{};
   socklen_t size = sizeof(address);
   std::array<char, NI_MAXSERV> port{};
@@ -102,11 +101,13 @@ class HttpServer::Responder final : public httplib::Server {
   void answer(httplib::Stream& stream) { answer_by(*this, stream); }
 
  private:
-  /// cpp-httplib of Debian 13 also takes both addresses, which none of our handlers reads.
+  /// In Debian 13, process_request() of cpp-httplib also takes the addresses of both ends. No
+  /// handler of ours reads them.
   template <typename Server>
   static void answer_by(Server& server, httplib::Stream& stream) {
     bool closed = false;
-    // A request of 8 KiB can name thousands of ranges, and each would repeat the whole answer.
+    // A request of 8 KiB can name thousands of ranges, and the response would repeat the whole
+    // answer for each.
     const auto forget_ranges = [](httplib::Request& request) { request.ranges.clear(); };
     if constexpr (requires { server.process_request(stream, true, closed, forget_ranges); }) {
       server.process_request(stream, true, closed, forget_ranges);
@@ -118,7 +119,7 @@ class HttpServer::Responder final : public httplib::Server {
 
 class HttpServer::Impl {
  public:
-  Impl(Socket listener, const HttpLimits& limits)
+  Impl(FileDescriptor listener, const HttpLimits& limits)
       : limits_(limits),
         listener_(std::move(listener)),
         wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
@@ -157,7 +158,7 @@ class HttpServer::Impl {
 
  private:
   struct Waiting {
-    Socket socket;
+    FileDescriptor socket;
     SteadyTime until;
   };
 
@@ -180,7 +181,8 @@ class HttpServer::Impl {
 
   void accept_all(SteadyTime now) {
     while (true) {
-      Socket socket(accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+      FileDescriptor socket(
+          accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
       if (socket.get() < 0) break;
       if (waiting_.size() >= limits_.waiting) waiting_.pop_front();
       waiting_.push_back({std::move(socket), now + limits_.idle});
@@ -192,7 +194,7 @@ class HttpServer::Impl {
     }
   }
 
-  void hand_over(Socket socket) {
+  void hand_over(FileDescriptor socket) {
     {
       const std::lock_guard lock(mutex_);
       if (queue_.size() >= limits_.queued) return;
@@ -206,7 +208,7 @@ class HttpServer::Impl {
       std::unique_lock lock(mutex_);
       queue_filled_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
       if (stopping_) return;
-      const Socket socket = std::move(queue_.front());
+      const FileDescriptor socket = std::move(queue_.front());
       queue_.pop_front();
       answering_.push_back(socket.get());
       lock.unlock();
@@ -220,13 +222,13 @@ class HttpServer::Impl {
 
   const HttpLimits limits_;
   Responder responder_;
-  Socket listener_;
-  Socket wake_;
+  FileDescriptor listener_;
+  FileDescriptor wake_;
   const int port_;
   std::list<Waiting> waiting_;  ///< oldest first; used by the accepting thread only
   std::mutex mutex_;            ///< guards the next three
   std::condition_variable queue_filled_;
-  std::deque<Socket> queue_;
+  std::deque<FileDescriptor> queue_;
   std::vector<int> answering_;  ///< sockets that the workers answer
   std::atomic<bool> stopping_{false};
   std::vector<std::jthread> threads_;

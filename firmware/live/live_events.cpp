@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <nlohmann/json.hpp>
-#include <openssl/evp.h>
 
+#include "common/base64.h"
 #include "common/json_dump.h"
 #include "pipeline/bev_grid.h"
 #include "pipeline/localization/projected_map.h"
@@ -16,15 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kReduction = 2;  ///< cells of the mask per character
-
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                     reinterpret_cast<const unsigned char*>(bytes.data()),
-                                     static_cast<int>(bytes.size()));
-  text.resize(static_cast<size_t>(length));
-  return text;
-}
 
 double rounded(double value, double steps_per_unit) {
   return std::round(value * steps_per_unit) / steps_per_unit;

@@ -128,7 +128,7 @@ class LiveServer::Impl {
   std::deque<TrailPoint> trail_;
   bool trail_interrupted_ = false;  ///< whether there was no pose since the last point
 
-  /// Guards the next three, and needs_ except its set(). Held while something is drawn.
+  /// Guards the next three, and needs_ except needs_.set(). draw() holds it.
   std::mutex scene_mutex_;
   std::shared_ptr<LiveFeed> feed_;
   Rig rig_;
@@ -199,15 +199,16 @@ void LiveServer::Impl::tell_feed() {
   if (feed_) feed_->set_viewers(viewers_);
 }
 
-/// Answers /events. A page that is refused asks with HEAD for the reason, because a browser does
-/// not tell it.
+/// Answers /events. A browser does not tell a page why its request for events was refused. So the
+/// page asks for the reason with HEAD.
 void LiveServer::Impl::stream_events(const httplib::Request& request, httplib::Response& response) {
   const bool asks = request.method == "HEAD";
   if (asks && viewers_ < kViewers) return;
   if (asks || !add_viewer()) {
     response.status = 503;
     response.set_content(
-        fmt::format("found {} viewers, wanted at most {}: close one\n", kViewers, kViewers),
+        fmt::format("found {} viewers, which is the most that bevlocd serves: close one\n",
+                    kViewers),
         "text/plain");
     return;
   }
@@ -285,7 +286,7 @@ Result<std::unique_ptr<LiveServer>> LiveServer::start(const LiveConfig& config) 
   std::unique_ptr<LiveServer> server(new LiveServer(std::make_unique<Impl>(std::move(*http))));
   spdlog::info("live page: http://{}/", authority_of(config));
   if (config.open_to_network) {
-    spdlog::warn("live page: every machine that reaches {} sees the cameras; anybody may look",
+    spdlog::warn("live page: whoever reaches {} sees the cameras, because there is no password",
                  config.address);
   }
   return server;

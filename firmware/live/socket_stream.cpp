@@ -5,7 +5,6 @@
 
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 namespace bevloc::firmware {
 namespace {
@@ -24,11 +23,7 @@ bool wait_for(int socket, short event, SteadyClock::time_point until) {
 
 }  // namespace
 
-Socket::~Socket() {
-  if (file_ >= 0) close(file_);
-}
-
-SocketStream::SocketStream(const Socket& socket, const HttpLimits& limits)
+SocketStream::SocketStream(const FileDescriptor& socket, const HttpLimits& limits)
     : socket_(socket), limits_(limits), read_until_(SteadyClock::now() + limits.request) {}
 
 bool SocketStream::is_writable() const {

@@ -4,27 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "common/file_descriptor.h"
 #include "firmware/live/http_server.h"
 #include "firmware/live/httplib_header.h"
 
 namespace bevloc::firmware {
-
-/// Owns a socket, and closes it at its end.
-class Socket {
- public:
-  explicit Socket(int file = -1) : file_(file) {}
-  Socket(Socket&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-  Socket& operator=(Socket&& other) noexcept {
-    std::swap(file_, other.file_);
-    return *this;
-  }
-  ~Socket();
-
-  int get() const { return file_; }
-
- private:
-  int file_;
-};
 
 /// cpp-httplib reads a request from this stream and writes the response to it. Reading fails when
 /// the request is not complete in time, or too long. Writing fails when the client does not read.
@@ -32,7 +16,7 @@ class Socket {
 class SocketStream final : public httplib::Stream {
  public:
   /// `socket` must be non-blocking and outlive this.
-  SocketStream(const Socket& socket, const HttpLimits& limits);
+  SocketStream(const FileDescriptor& socket, const HttpLimits& limits);
 
   bool is_readable() const override { return true; }
   bool is_writable() const override;
@@ -45,7 +29,7 @@ class SocketStream final : public httplib::Stream {
  private:
   bool fill();
 
-  const Socket& socket_;
+  const FileDescriptor& socket_;
   const HttpLimits& limits_;
   const std::chrono::steady_clock::time_point read_until_;
   size_t read_bytes_ = 0;

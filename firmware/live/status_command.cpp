@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
+#include "common/file_descriptor.h"
 #include "firmware/config/live_config.h"
 #include "firmware/live/httplib_header.h"
 #include "firmware/status/status_json.h"
@@ -35,16 +35,16 @@ std::string connection_error(const std::string& address, int port) {
   const int unknown = getaddrinfo(address.c_str(), std::to_string(port).c_str(), &wanted, &found);
   if (unknown != 0) return gai_strerror(unknown);
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owned(found, freeaddrinfo);
-  const int file = socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (file < 0) return std::strerror(errno);
-  int error = connect(file, found->ai_addr, found->ai_addrlen) == 0 ? 0 : errno;
+  const FileDescriptor socket(
+      ::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) return std::strerror(errno);
+  int error = connect(socket.get(), found->ai_addr, found->ai_addrlen) == 0 ? 0 : errno;
   if (error == EINPROGRESS) {
-    pollfd connecting{file, POLLOUT, 0};
+    pollfd connecting{socket.get(), POLLOUT, 0};
     poll(&connecting, 1, 1000);
     socklen_t size = sizeof error;
-    getsockopt(file, SOL_SOCKET, SO_ERROR, &error, &size);
+    getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size);
   }
-  close(file);
   return error == 0 ? "no answer" : std::strerror(error);
 }
 
@@ -92,7 +92,7 @@ void StatusCommand::declare(CLI::App& app) {
   command->add_option("--address", address_, "IP address of the daemon")
       ->check(CLI::Validator(check_address, "", ""))
       ->capture_default_str();
-  command->add_option("--port", port_, "Its port")
+  command->add_option("--port", port_, "Port of the daemon")
       ->check(CLI::Range(1, 65535))
       ->capture_default_str();
   command->add_flag("--json", json_, "Print the status as JSON");
@@ -114,7 +114,10 @@ int StatusCommand::run() const {
     fmt::print("{}", json_ ? answer->text : status_page(answer->status));
     return valid ? kValid : kNotValid;
   } catch (const nlohmann::json::exception& error) {
-    fmt::print(stderr, "bevloc: found a status of another version of bevlocd ({})\n", error.what());
+    fmt::print(stderr,
+               "bevloc: found a status of another version of bevlocd ({}); use the bevloc of that "
+               "version\n",
+               error.what());
     return kNotReachable;
   }
 }

@@ -14,7 +14,7 @@ uint64_t clock_ns(Time time) {
   return static_cast<uint64_t>(time.time_since_epoch().count());
 }
 
-/// Returns the name that viewers know, where they have one for the format.
+/// Returns the name that common viewers of MCAP files use, if they have one for the format.
 std::string_view encoding_of(PixelFormat format) {
   switch (format) {
     case PixelFormat::kRgb24:
@@ -218,7 +218,7 @@ std::optional<HdMap> map_of(const recording::Map& message) {
   map.name = message.name();
   map.origin = {message.origin_latitude_deg(), message.origin_longitude_deg()};
   for (const recording::MapElement& element : message.elements()) {
-    if (element.element_class() > static_cast<uint32_t>(ElementClass::kRoadBoundary)) continue;
+    if (element.element_class() >= kElementClasses) continue;
     MapElement& added = map.elements.emplace_back();
     added.element_class = static_cast<ElementClass>(element.element_class());
     added.appearance = static_cast<Appearance>(element.appearance());

@@ -51,11 +51,11 @@ Result<RecordingFile::Topic*> RecordingFile::topic_of(std::string_view name,
   if (const auto known = topics_.find(name); known != topics_.end()) return &known->second;
   const std::string& type = message.GetDescriptor()->full_name();
   if (!schemas_.contains(type)) {
-    const auto schema = writer_->add_schema(type, "protobuf", descriptor_set_of(message));
+    const auto schema = writer_->add_schema(type, descriptor_set_of(message));
     if (!schema) return tl::unexpected(schema.error());
     schemas_.emplace(type, *schema);
   }
-  const auto channel = writer_->add_channel(schemas_.at(type), std::string(name), "protobuf");
+  const auto channel = writer_->add_channel(schemas_.at(type), name);
   if (!channel) return tl::unexpected(channel.error());
   return &topics_.emplace(name, Topic{*channel, 0}).first->second;
 }

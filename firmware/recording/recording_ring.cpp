@@ -68,7 +68,7 @@ struct Listed {
   uint64_t latest_ns = 0;  ///< this time, or the time of the last change if that is later
 };
 
-/// Returns nothing for what is no file, or is gone.
+/// Returns nothing if the path is not a regular file or no longer exists.
 std::optional<Listed> listed(const fs::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
@@ -79,8 +79,8 @@ std::optional<Listed> listed(const fs::path& path) {
 }
 
 /// Lists the recordings in the folder of `newest` in the order of deletion. Files with a later time
-/// come first, because the clock was wrong when they were written. The others follow, oldest first,
-/// and `newest` is last.
+/// than `newest` come first, because the clock was wrong when they were written. The others follow,
+/// oldest first, and `newest` is last.
 std::vector<Listed> list_recordings(const fs::path& newest) {
   std::vector<Listed> files;
   std::error_code error;
@@ -142,9 +142,9 @@ Status RecordingRing::begin_file(uint64_t log_time_ns) {
   return {};
 }
 
-/// Takes the age of a file from the time in its name, which is a log time, or from the time of its
-/// last change if that is later. The latter comes from the wall clock. So a file is not too old
-/// only because the clock was set after it was begun.
+/// The age of a file counts from the later one of two times: the log time in its name, and the time
+/// of its last change by the system clock. So a file does not become too old if the clock is set
+/// after the file was begun.
 void RecordingRing::delete_old(const fs::path& newest, uint64_t log_time_ns) {
   const std::vector<Listed> files = list_recordings(newest);
   uint64_t total = 0;
@@ -176,7 +176,8 @@ void RecordingRing::warn_of_the_clock() {
   clock_warned_ = true;
   spdlog::warn(
       "recording: the clock is probably wrong, because all earlier recordings in {} would be too "
-      "old by more than a year; keeps them until the folder exceeds record.max_mb; check the clock",
+      "old by more than a year; they are kept until the folder exceeds record.max_mb; check the "
+      "clock",
       config_.directory.string());
 }
 
@@ -209,7 +210,7 @@ Status RecordingRing::write(std::string_view topic, const google::protobuf::Mess
 
 Status RecordingRing::step(uint64_t log_time_ns) {
   const auto length = static_cast<uint64_t>(config_.file_length.count());
-  const uint64_t share = config_.max_bytes / 4;  // makes the black box fit into the ring
+  const uint64_t share = config_.max_bytes / 4;  // so that the black box fits into the ring
   RecentFile& newest = recent_.back();
   if (log_time_ns < newest.begin_ns + length && file_->bytes_written() < share) {
     if (const Status room = make_room(newest.path); !room) return room;

@@ -20,9 +20,10 @@ std::string absolute_name(const std::filesystem::path& path) {
   return path.empty() ? "" : std::filesystem::absolute(path, ignored).lexically_normal().string();
 }
 
+/// Attaches what the appliance uses: the file as load_config() read it, or else as it is now.
 void attach_file(std::string_view name, const char* media_type, const std::filesystem::path& path,
-                 RecordingHead& head) {
-  auto content = read_file(path);
+                 const Config& config, RecordingHead& head) {
+  auto content = config.kept_files.bytes_of(path);
   if (!content) return;
   head.attachments.push_back({0, std::string(name), media_type, std::move(*content)});
 }
@@ -59,11 +60,12 @@ Result<std::unique_ptr<Recorder>> open_recorder(const Config& config, const Rig&
   const Duration offset = read_clock(CLOCK_REALTIME) - now.time_since_epoch();
   RecordingHead head;
   head.metadata = metadata_of(config, map, lockstep, now, offset);
-  attach_file(kConfigAttachment, kYaml, config.file, head);
-  attach_file(kRigAttachment, kYaml, config.rig_file, head);
-  if (config.can.vehicle) attach_file(kDbcAttachment, "text/plain", config.can.dbc_file, head);
+  attach_file(kConfigAttachment, kYaml, config.file, config, head);
+  attach_file(kRigAttachment, kYaml, config.rig_file, config, head);
+  if (config.can.vehicle)
+    attach_file(kDbcAttachment, "text/plain", config.can.dbc_file, config, head);
   if (!config.learned_calibration_file.empty()) {
-    attach_file(kLearnedAttachment, kYaml, config.learned_calibration_file, head);
+    attach_file(kLearnedAttachment, kYaml, config.learned_calibration_file, config, head);
   }
   add_message(std::string(kMapTopic), map_message(map), head);
   for (int camera = 0; camera < kCameraCount; ++camera) {

@@ -4,6 +4,7 @@
 
 #include "can/secoc/secoc_files.h"
 #include "firmware/config/config_key.h"
+#include "firmware/config/localizer_options.h"
 #include "firmware/devices/can_bus.h"
 #include "firmware/runtime/identity.h"
 #include "pipeline/online_calibration/calibration_file.h"
@@ -11,9 +12,10 @@
 namespace bevloc::firmware {
 namespace {
 
-/// Makes the localizer start with what an earlier drive learned. Without it this drive learns it
-/// again, so a fault of the file does not keep the daemon from starting.
+/// Gives the localizer the calibration errors that an earlier drive learned. If the file cannot be
+/// used, the daemon starts all the same, because this drive learns the errors again.
 void restore_calibration(const Config& config, const Rig& rig, Localizer& localizer) {
+  if (!config.online_calibration.enabled) return;
   const std::filesystem::path& file = config.learned_calibration_file;
   std::error_code ignored;
   if (file.empty() || !std::filesystem::exists(file, ignored)) return;
@@ -21,8 +23,10 @@ void restore_calibration(const Config& config, const Rig& rig, Localizer& locali
   if (!learned) {
     spdlog::warn("{}", learned.error().message);
   } else if (!localizer.restore_calibration(learned->errors, learned->covariance)) {
-    spdlog::warn("{}: found learned errors beyond the bounds, wanted less; they are not used",
-                 file.string());
+    spdlog::warn(
+        "{}: found learned errors of the calibration beyond their bounds, wanted smaller ones; "
+        "they are not used, and bevlocd learns them again",
+        file.string());
   }
 }
 
@@ -33,7 +37,7 @@ Result<std::unique_ptr<Appliance>> Appliance::create(const Config& config, const
   auto map_index = std::make_unique<MapIndex>(map);
   auto localizer = at_key(
       "model.file",
-      Localizer::create(rig, *map_index, config.model_file.string(), localizer_options(config)));
+      Localizer::create(rig, *map_index, config.model_file.string(), localizer_options_of(config)));
   if (!localizer) return tl::unexpected(localizer.error());
   log_identity(identity_of(config, map), map, (*localizer)->model_name());
   restore_calibration(config, rig, **localizer);
@@ -89,8 +93,9 @@ Status Appliance::authenticate(const SecocConfig& config, const can::BaseIds& ba
   if (!start) return tl::unexpected(start.error());
   if (*start == 1) {
     spdlog::warn(
-        "can.secoc: {}: there was no number of earlier starts, so this is start 1; a vehicle that "
-        "knows a later start refuses all messages: then write a larger number, or change the key",
+        "can.secoc: {}: found no number of earlier starts, so this counts as start 1; if the "
+        "vehicle has seen a later start, it refuses all messages: then write a larger number into "
+        "this file, or change the key",
         config.starts_file.string());
   }
   publisher_.authenticate(can::SecocSender(std::move(*sending), *start));
@@ -128,15 +133,6 @@ can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map
   publisher.sends_clock = config.can.sends_clock;
   publisher.map_origin = {map.origin.latitude_deg, map.origin.longitude_deg};
   return publisher;
-}
-
-LocalizerOptions localizer_options(const Config& config) {
-  LocalizerOptions options;
-  options.solver = config.solver.kind;
-  options.tracking = config.solver.tracking;
-  options.acquiring = config.solver.acquiring;
-  options.online_calibration = config.online_calibration;
-  return options;
 }
 
 }  // namespace bevloc::firmware

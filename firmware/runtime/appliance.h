@@ -110,8 +110,7 @@ class Appliance {
   StageHeartbeats heartbeats_;
 };
 
-/// The configuration of the publisher and of the localizer.
+/// The configuration of the publisher.
 can::PosePublisherConfig publisher_config(const Config& config, const HdMap& map);
-LocalizerOptions localizer_options(const Config& config);
 
 }  // namespace bevloc::firmware

@@ -28,7 +28,7 @@ can::ClockReport ClockWatch::step() {
   }
   if (!was_good) {
     spdlog::info("clock: synchronized, error at most {:.3f} ms",
-                 1e3 * to_seconds(discipline.max_error));
+                 to_milliseconds(discipline.max_error));
   }
   return {.source = config_.source,
           .utc_offset = reading.wall.since_1970 - reading.steady.time_since_epoch(),
@@ -40,7 +40,7 @@ void ClockWatch::log_loss(const drivers::ClockDiscipline& discipline) const {
     spdlog::warn(
         "clock: found an error of up to {:.3f} ms, wanted {:.3f} ms (clock.max_error_ms); "
         "TimeSource is FREE_RUNNING; check chrony or phc2sys",
-        1e3 * to_seconds(discipline.max_error), 1e3 * to_seconds(config_.max_error));
+        to_milliseconds(discipline.max_error), to_milliseconds(config_.max_error));
   } else {
     spdlog::warn(
         "clock: found a system clock that the kernel calls not synchronized, wanted one that a "

@@ -10,18 +10,17 @@
 namespace bevloc::firmware {
 namespace {
 
-uint32_t checksum_of_file(const std::filesystem::path& file) {
-  const auto content = read_file(file);
-  return content ? crc32(*content) : 0U;
+uint32_t checksum_of(const Result<std::string>& bytes) {
+  return bytes ? crc32(*bytes) : 0U;
 }
 
 }  // namespace
 
 can::Identity identity_of(const Config& config, const HdMap& map) {
   return {.program = crc32(version()),
-          .configuration = checksum_of_file(config.file),
-          .model = checksum_of_file(config.model_file),
-          .rig = checksum_of_file(config.rig_file),
+          .configuration = checksum_of(config.kept_files.bytes_of(config.file)),
+          .model = checksum_of(read_file(config.model_file)),
+          .rig = checksum_of(config.kept_files.bytes_of(config.rig_file)),
           .map = map_checksum(map)};
 }
 

@@ -31,7 +31,7 @@ constexpr Duration kEndPatience = std::chrono::seconds(4);
 /// Forgets the pose when the clock had a gap, then publishes.
 void publish(Appliance& appliance, ClockGapDetector& gaps) {
   if (gaps.look(appliance.clock())) appliance.estimation().note_clock_gap();
-  appliance.estimation().tick(appliance.clock().now());
+  appliance.estimation().tick(appliance.clock());
   appliance.heartbeats().can_out.beat();
 }
 
@@ -77,6 +77,26 @@ class EndingThread {
 
 /// The threads are in a deque, because a thread cannot be moved.
 using Threads = std::deque<EndingThread>;
+
+/// The threads run while this object exists. Its destruction, also by an exception, makes them end.
+/// Declare it after the threads, because their destruction waits for their end.
+class Running {
+ public:
+  Running(Appliance& appliance, std::atomic<bool>& running)
+      : appliance_(appliance), running_(running) {
+    running_ = true;
+  }
+  ~Running() {
+    running_ = false;
+    appliance_.close();
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+ private:
+  Appliance& appliance_;
+  std::atomic<bool>& running_;
+};
 
 void capture(CaptureStage& stage, const std::atomic<bool>& running) {
   while (running && stage.step(kPatience)) {
@@ -189,20 +209,21 @@ void sign_off(Appliance& appliance, const Threads& threads,
 
 void run_threads(Appliance& appliance, Realtime& realtime, const Companion* companion,
                  const Supervise& supervise) {
-  std::atomic<bool> running{true};
+  std::atomic<bool> running{false};
   drivers::Clock& clock = appliance.clock();
   realtime.lock_memory();
   Threads threads;
-  start_stages(appliance, realtime, running, threads);
-  if (companion != nullptr) start_companion(clock, *companion, running, threads);
-  Time next = clock.now();
-  do {
-    // After a stall, continue from now instead of supervising in a burst.
-    next = std::max(next + kSupervisionPeriod, clock.now());
-    clock.sleep_until(next);
-  } while (supervise(clock.now()));
-  running = false;
-  appliance.close();
+  {
+    const Running until_the_end(appliance, running);
+    start_stages(appliance, realtime, running, threads);
+    if (companion != nullptr) start_companion(clock, *companion, running, threads);
+    Time next = clock.now();
+    do {
+      // After a stall, continue from now instead of supervising in a burst.
+      next = std::max(next + kSupervisionPeriod, clock.now());
+      clock.sleep_until(next);
+    } while (supervise(clock.now()));
+  }
   const auto give_up = std::chrono::steady_clock::now() + kEndPatience;
   sign_off(appliance, threads, give_up);
   const std::string hung = wait_for_end(threads, give_up, [](const auto&) { return true; });

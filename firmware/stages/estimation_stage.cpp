@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware/threads/clock_gap.h"
 
@@ -21,7 +22,7 @@ constexpr size_t index_of(TrackerUpdate outcome) {
   return static_cast<size_t>(outcome);
 }
 
-/// Framesets that come more slowly are taken for missing.
+/// Framesets that are further apart than this count as missing.
 constexpr Duration kSlowFramesets = std::chrono::milliseconds(500);
 
 Duration age(const std::optional<Time>& time, Time now) {
@@ -33,6 +34,19 @@ void add_uncertainty(const TrackedPose& pose, HealthInputs& inputs) {
   inputs.lateral_sigma_m = std::sqrt(pose.covariance(1, 1));
   inputs.yaw_sigma_rad = std::sqrt(pose.covariance(2, 2));
   inputs.internal_error = !pose.map_from_vehicle.is_finite() || !pose.covariance.allFinite();
+}
+
+void withhold_pose(can::LocalizerStatus& status) {
+  status.state = HealthState::kLost;
+  status.why |= Why::kPoseStale;
+}
+
+/// Takes back what does not hold any more after the machine was suspended. The age of the pose
+/// does not show this, because the clock stood still meanwhile.
+void take_back(can::PoseReport& report) {
+  if (claims_pose(report.status.state)) withhold_pose(report.status);
+  report.clock = {};
+  report.status.time_source = report.clock.source;
 }
 
 }  // namespace
@@ -59,7 +73,9 @@ void EstimationStage::observe_reports(ReportObserver observer) {
   report_observer_ = std::move(observer);
 }
 
-void EstimationStage::tick(Time now) {
+void EstimationStage::tick(const drivers::Clock& clock) {
+  const Time now = clock.now();
+  suspended_ = clock.suspended();
   watch_clock(now);
   take_samples();
   take_reports(now);
@@ -77,7 +93,7 @@ void EstimationStage::tick(Time now) {
   update_health(pose, now);
   note_pose(pose);
   if (pose) predictions_.push({*pose, !health_.pose_valid() || matches_.wide_search()});
-  publish(pose, now);
+  publish(pose, now, clock);
   ++counters_.ticks;
 }
 
@@ -90,7 +106,7 @@ void EstimationStage::note_clock_gap() {
   }
   estimator_.reset();
   stamps_.note_gap();
-  gnss_lag_.reset();
+  gnss_lag_.note_gap();
   last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
@@ -100,8 +116,7 @@ void EstimationStage::note_clock_gap() {
 
 void EstimationStage::sign_off(Time now) {
   can::PoseReport report = begin_report();
-  report.status.state = HealthState::kLost;
-  report.status.why |= Why::kPoseStale;
+  withhold_pose(report.status);
   report.pose_time = now;
   publisher_.publish(report, now);
 }
@@ -118,8 +133,8 @@ void EstimationStage::take_samples() {
     }
     const TrackerUpdate outcome = estimator_.add(*sample);
     ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
-    // A GNSS sample that the gate refuses has arrived, although it contradicts. So has one that
-    // waits for a heading or for odometry.
+    // A GNSS sample counts as arrived even if the gate refuses it, or if it waits for a heading or
+    // for odometry.
     const bool gnss_is_there = outcome == TrackerUpdate::kNoHeading ||
                                outcome == TrackerUpdate::kNoOdometry ||
                                outcome == TrackerUpdate::kGated;
@@ -130,7 +145,8 @@ void EstimationStage::take_samples() {
   }
 }
 
-/// GNSS that is excluded already does no harm, and its headings may be wrong for another reason.
+/// Does not watch GNSS that is excluded: it does no harm, and its headings may be wrong for another
+/// reason.
 void EstimationStage::watch_gnss_lag() {
   if (estimator_.verdict().gnss_excluded) gnss_lag_.reset();
   counters_.gnss_lag_ms = gnss_lag_.lag_ms();
@@ -160,7 +176,7 @@ void EstimationStage::take_reports(Time now) {
     stamps_.add_report(*report);
     counters_.stamp_offset_ms = stamps_.offset_ms();
   }
-  // If all cameras stop, no report comes that would say so.
+  // If all cameras stop, no report comes, so the latest one expires.
   const Duration lifetime = std::max(report_lifetime_, 2 * report_interval_);
   if (now - latest_report_arrival_ > lifetime) latest_report_.reset();
 }
@@ -213,8 +229,7 @@ void EstimationStage::update_health(const std::optional<TrackedPose>& pose, Time
   if (pose && inputs.accepted_in_a_row > 0) clock_gap_ = false;
   if (health_.update(inputs) && health_.state() == HealthState::kLost) {
     matches_.restart_counts();
-    counters_.lost_why = health_.why().bits();
-    ++counters_.lost;
+    count_loss(health_.why());
   }
   note_validity(now);
   counters_.state = health_.state();
@@ -252,19 +267,34 @@ void EstimationStage::note_pose(const std::optional<TrackedPose>& pose) {
   counters_.pose.store(snapshot);
 }
 
-can::PoseReport EstimationStage::begin_report() const {
+void EstimationStage::count_loss(WhyMask why) {
+  counters_.lost_why = why.bits();
+  ++counters_.lost;
+}
+
+/// Counts a loss if a pose that is valid was not sent, and the one before was.
+void EstimationStage::note_sent(const can::LocalizerStatus& sent) {
+  counters_.time_source = sent.time_source;
+  const bool withheld = health_.pose_valid() && !claims_pose(sent.state);
+  const bool was_withheld = std::exchange(withheld_, withheld);
+  if (withheld && !was_withheld) count_loss(sent.why);
+}
+
+can::PoseReport EstimationStage::begin_report() {
+  // The supervising thread has a lower priority, so this thread must not wait for it.
+  if (const auto note = clock_.try_load()) clock_note_ = *note;
   can::PoseReport report;
   report.status = make_status();
-  report.clock = clock_.load();
+  if (clock_note_.gaps == counters_.clock_gaps) report.clock = clock_note_.clock;
   report.status.time_source = report.clock.source;
   return report;
 }
 
-void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) {
+void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time pose_time,
+                              const drivers::Clock& clock) {
   can::PoseReport report = begin_report();
-  counters_.time_source = report.clock.source;
   report.capture_time = matches_.accepted_time();
-  report.pose_time = now;
+  report.pose_time = pose_time;
   if (pose) {
     report.map_from_vehicle = pose->map_from_vehicle;
     report.covariance = map_covariance(*pose);
@@ -276,10 +306,14 @@ void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time now) 
   if (latest_report_ && latest_report_->match.evidence == Evidence::kGood) {
     report.correction = latest_report_->match.correction;
   }
-  publisher_.publish(report, now);
+  if (clock.suspended() - suspended_ > can::kMaxPoseAge) take_back(report);
+  // The thread may have stood still since `pose_time`.
+  const Time now = clock.now();
+  report.status = publisher_.publish(report, now);
+  note_sent(report.status);
   if (report_observer_) report_observer_(report);
   const auto frame_time = matches_.take_unsent();
-  if (health_.pose_valid() && frame_time) {
+  if (claims_pose(report.status.state) && frame_time) {
     counters_.latency.add(now - *frame_time);
     if (correction_observer_) correction_observer_(*frame_time);
   }

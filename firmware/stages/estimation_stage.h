@@ -7,6 +7,7 @@
 
 #include "can/publisher/pose_publisher.h"
 #include "common/published.h"
+#include "drivers/clock/clock.h"
 #include "firmware/health/health.h"
 #include "firmware/stages/gnss_lag_watch.h"
 #include "firmware/stages/match_history.h"
@@ -35,8 +36,8 @@ struct EstimationCounters {
   /// next two members.
   std::atomic<uint64_t> lost{0};      ///< how often the pose was lost
   std::atomic<uint32_t> lost_why{0};  ///< reasons of the latest loss: bits of a WhyMask
-  /// The time since when a pose that was valid is not valid. It is Time::max() while the pose is
-  /// valid or never was.
+  /// When the pose stopped being valid. It is Time::max() while the pose is valid, or if no pose
+  /// was valid yet.
   std::atomic<Time> invalid_since{Time::max()};
   /// Offset of the cameras' time stamps against odometry, or 0 while it is tolerated
   /// (StampMonitor).
@@ -56,7 +57,8 @@ struct EstimationCounters {
 /// time of the frameset that the correction came from.
 using CorrectionObserver = std::function<void(Time frame_time)>;
 
-/// A function that is called with each report that goes to the bus, except the sign-off.
+/// A function that is called with each report that went to the bus, except the sign-off. The status
+/// is the one that was sent.
 using ReportObserver = std::function<void(const can::PoseReport& report)>;
 
 /// Thread-bound: called from the CAN-out thread, except note_clock(). counters() is readable from
@@ -75,16 +77,20 @@ class EstimationStage {
   /// stage.
   void watch(const VehicleInputStage& input) { vehicle_input_ = &input; }
 
-  /// Sets what the status tells about the clock from now on. Thread-bound: called from the
-  /// supervising thread.
-  void note_clock(const can::ClockReport& clock) { clock_.store(clock); }
+  /// Sets what the status tells about the clock from now on, until the next gap. Thread-bound:
+  /// called from the supervising thread.
+  void note_clock(const can::ClockReport& clock) {
+    clock_.store({clock, counters_.clock_gaps.load()});
+  }
 
-  /// Takes all queued samples and reports, then publishes the pose predicted to `now`. Call it once
-  /// per bus cycle.
-  void tick(Time now);
+  /// Takes all queued samples and reports, then publishes the pose predicted to the time at which
+  /// it began. If the thread stood still or the machine was suspended meanwhile, it sends LOST,
+  /// because the pose is too old. Call it once per bus cycle.
+  void tick(const drivers::Clock& clock);
 
   /// Forgets the pose and what is queued, because the vehicle may have been moved while the machine
-  /// was suspended. The next tick() reports LOST with Why::kClockGap.
+  /// was suspended. The next tick() reports LOST with Why::kClockGap. The clock counts as
+  /// free-running until the next note_clock(), because a suspension changes the offset to UTC.
   void note_clock_gap();
 
   /// Publishes the state LOST without a pose, so that consumers need not wait for a timeout. Call
@@ -94,6 +100,12 @@ class EstimationStage {
   const EstimationCounters& counters() const { return counters_; }
 
  private:
+  /// What note_clock() was told. It holds as long as there are no further gaps.
+  struct ClockNote {
+    can::ClockReport clock;
+    uint64_t gaps = 0;  ///< EstimationCounters::clock_gaps at that time
+  };
+
   void take_samples();
   void take_reports(Time now);
   void add_correction(const VisionReport& report);
@@ -104,10 +116,12 @@ class EstimationStage {
   void update_health(const std::optional<TrackedPose>& pose, Time now);
   void note_validity(Time now);
   void note_pose(const std::optional<TrackedPose>& pose);
-  void publish(const std::optional<TrackedPose>& pose, Time now);
+  void publish(const std::optional<TrackedPose>& pose, Time pose_time, const drivers::Clock& clock);
+  void note_sent(const can::LocalizerStatus& sent);
+  void count_loss(WhyMask why);
   can::LocalizerStatus make_status() const;
   /// Returns a report that is complete except for the pose.
-  can::PoseReport begin_report() const;
+  can::PoseReport begin_report();
 
   PoseEstimator estimator_;
   Health health_;
@@ -132,10 +146,13 @@ class EstimationStage {
   Time latest_report_arrival_;
   Duration report_interval_{0};  ///< between the latest two reports, at most kSlowFramesets
   bool network_fault_ = false;
-  Published<can::ClockReport> clock_;
+  Published<ClockNote> clock_;
+  ClockNote clock_note_;   ///< the latest one that this thread could read from `clock_`
+  bool withheld_ = false;  ///< the latest pose was valid, but was not sent
   StampWatch stamps_;
   GnssLagWatch gnss_lag_;
   std::optional<Time> last_tick_;
+  Duration suspended_{};    ///< Clock::suspended() when the latest tick() began
   bool clock_gap_ = false;  ///< no correction was accepted since the latest gap
   EstimationCounters counters_;
 };

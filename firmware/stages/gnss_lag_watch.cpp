@@ -14,6 +14,11 @@ void GnssLagWatch::add(const GnssSample& sample) {
   waiting_ = Heading{sample.time, sample.yaw->yaw_rad};
 }
 
+void GnssLagWatch::note_gap() {
+  monitor_.note_gap();
+  waiting_.reset();
+}
+
 void GnssLagWatch::reset() {
   monitor_.reset();
   waiting_.reset();

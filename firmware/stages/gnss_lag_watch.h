@@ -12,14 +12,15 @@
 namespace bevloc::firmware {
 
 /// If GNSS is late, it puts the vehicle too far back along the road. Matches often do not show
-/// this. The heading of GNSS is late as well, and bends show by how much. A straight road gives no
-/// evidence. A course over ground gives none either, because it is that of the antenna and the
-/// receiver filters it. Allocates in the constructor only. One thread.
+/// this. The heading of GNSS is then late as well, and bends show by how much. A straight road
+/// gives no evidence. A course over ground gives none either, because it describes the motion of
+/// the antenna, and the receiver filters it. Allocates in the constructor only. One thread.
 class GnssLagWatch {
  public:
   /// A sample may be as old as one cycle of GNSS.
   static constexpr Duration kTolerated = std::chrono::milliseconds(100);
-  /// Headings of receivers with two antennas have a smaller sigma, courses over ground a larger.
+  /// Headings with a larger sigma are not used. Receivers with two antennas have a smaller one, and
+  /// courses over ground have a larger one.
   static constexpr double kMostSigma_rad = radians(2.0);
 
   /// Adds the vehicle's yaw rate.
@@ -35,7 +36,10 @@ class GnssLagWatch {
   /// 0 if the heading seems newer, because then the yaw rate is late.
   int lag_ms() const { return std::max(monitor_.contradicting_ms(), 0); }
 
-  /// Forgets everything, after a gap in time or because GNSS is excluded for another reason.
+  /// Begins a new history after a gap in time. GNSS that is too old stays so.
+  void note_gap();
+
+  /// Forgets everything, because GNSS is excluded for another reason.
   void reset();
 
  private:

@@ -17,8 +17,8 @@ constexpr std::array<std::pair<TrackerUpdate, const char*>, 4> kRefusals = {{
      "beyond a physical limit, stuck, or of the wrong sign; check sensor and scaling"},
 }};
 
-/// The number of epochs in about five seconds. The receiver refuses those of the first second of
-/// each start.
+/// The number of epochs in about five seconds. The receiver always refuses the epochs of about the
+/// first second after a start.
 constexpr uint64_t kEpochsOfAStart = 300;
 
 }  // namespace
@@ -56,6 +56,10 @@ void ErrorLog::note_camera(int camera, const CameraSnapshot& snapshot, Time now)
   count_camera("no free buffer for a frame; raise cameras.buffers", snapshot.driver.no_buffer);
   count_camera("frame not fetched in time; check the load of this machine",
                snapshot.driver.overrun);
+  count_camera(
+      "frame dropped because newer ones filled its queue; check the load of this machine, or lower "
+      "the frame rate",
+      snapshot.synchronizer.overflow);
   count_camera("frame came after its frameset was complete; raise cameras.wait_ms",
                snapshot.synchronizer.late);
   count_camera("frame older than the one before it; check its time stamps",

@@ -81,6 +81,8 @@ void add_state(Families& families, const Telemetry& telemetry) {
                  static_cast<double>(estimation.time_source));
   families.count("bevloc_clock_gaps_total",
                  "Suspensions and stops of the process that were noticed", estimation.clock_gaps);
+  families.count("bevloc_cycles_total", "Bus cycles in which the thread CAN out did its work",
+                 estimation.ticks);
 }
 
 void add_pose(Families& families, const Telemetry& telemetry, Duration age) {
@@ -129,6 +131,8 @@ void add_camera(Families& families, const Telemetry& telemetry, int index) {
         camera.unreadable);
   count("bevloc_camera_framesets_missed_total", "Framesets that were emitted without the camera",
         camera.synchronizer.missing);
+  count("bevloc_camera_framesets_waited_total",
+        "Framesets among these that waited for the camera in vain", camera.synchronizer.waited_for);
   families.gauge("bevloc_camera_used", "1 if the latest frameset used the camera",
                  telemetry.snapshot.estimation.cameras[index] ? 1 : 0, {{"camera", name}});
   families.gauge("bevloc_camera_drift_ppm", "How much faster the camera runs than the median one",
@@ -236,6 +240,10 @@ void add_gnss(Families& families, const GnssCounters& gnss) {
   families.gauge("bevloc_gnss_connected", "1 while gpsd is connected", gnss.connected ? 1 : 0);
   families.count("bevloc_gnss_connections_total", "How often gpsd was connected",
                  gnss.gpsd.connected);
+  families.count("bevloc_gnss_connections_failed_total", "Attempts to reach gpsd that failed",
+                 gnss.gpsd.failed);
+  families.count("bevloc_gnss_silences_total",
+                 "Connections that were closed because gpsd was silent", gnss.gpsd.silent);
   families.count("bevloc_gnss_samples_total", "Positions of gpsd that were used", gnss.samples);
   families.gauge("bevloc_gnss_age_max_seconds", "Largest age of a position that was used",
                  to_seconds(gnss.max_age));

@@ -63,6 +63,7 @@ json camera_of(const Telemetry& telemetry, int index) {
           {"dropped", refused.duplicate + refused.out_of_order + refused.late + refused.future +
                           refused.overflow + refused.unmatched},
           {"missed_framesets", refused.missing},
+          {"waited_framesets", refused.waited_for},
           {"unreadable", camera.unreadable},
           {"failures", camera.failures},
           {"faults", faults},
@@ -92,7 +93,7 @@ json bus_of(const Snapshot& snapshot) {
           {"error_frames", bus.error_frames},
           {"bus_off", bus.bus_off},
           {"confirmation_mean_ms", 1e3 * mean_s},
-          {"confirmation_max_ms", 1e3 * to_seconds(bus.confirmation_max)}};
+          {"confirmation_max_ms", to_milliseconds(bus.confirmation_max)}};
 }
 
 json vehicle_of(const can::VehicleInputCounters& input) {
@@ -127,10 +128,12 @@ json gnss_of(const GnssCounters& gnss) {
   uint64_t fixes = 0;
   for (const uint64_t count : gnss.fixes) fixes += count;
   return {{"connected", gnss.connected},
+          {"connections_failed", gnss.gpsd.failed},
+          {"silences", gnss.gpsd.silent},
           {"samples", gnss.samples},
           {"reports_refused", refused},
           {"fixes_refused", fixes - gnss.samples},
-          {"age_max_ms", 1e3 * to_seconds(gnss.max_age)}};
+          {"age_max_ms", to_milliseconds(gnss.max_age)}};
 }
 
 json recording_of(const RecordingSnapshot& recording) {
@@ -272,6 +275,7 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
   status["lost"] = {{"count", estimation.lost}, {"why", to_string(estimation.lost_why)}};
   status["valid"] = pose_is_valid(telemetry, age);
   status["pose"] = pose_of(estimation.pose);
+  status["cycles"] = estimation.ticks;
   status["rate_hz"] = telemetry.view.rate_hz;
   status["latency_ms"] = {{"median", estimation.latency.quantile_ms(0.5)},
                           {"p99", estimation.latency.quantile_ms(0.99)},
@@ -286,7 +290,7 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
                          {"without_prior", snapshot.framesets.no_prior},
                          {"refused", snapshot.framesets.refused},
                          {"off_pulse", snapshot.framesets.off_pulse},
-                         {"spread_ms", 1e3 * to_seconds(snapshot.framesets.spread)}};
+                         {"spread_ms", to_milliseconds(snapshot.framesets.spread)}};
   status["tracker"] = {{"odometry", tracker_of(estimation.odometry)},
                        {"gnss", tracker_of(estimation.gnss)},
                        {"corrections", tracker_of(estimation.corrections)}};

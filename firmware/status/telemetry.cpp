@@ -9,7 +9,7 @@ constexpr Duration kSilentSupervisor = std::chrono::seconds(2);
 /// bus cycle.
 constexpr Duration kOldPose = std::chrono::seconds(2);
 
-/// A pose that is lost is mostly found again within this time.
+/// A lost pose is usually found again within this time.
 constexpr Duration kLostGrace = std::chrono::seconds(10);
 
 /// With one of these reasons the daemon cannot become ready by itself, so somebody has to act.
@@ -49,13 +49,13 @@ const char* advice_for(Why why) {
     case Why::kOutsideMap:
       return "Check that the map covers this place and that its origin is right.";
     case Why::kMatchUncertain:
-      return "Drive on; if it stays, compare the map's origin with the GNSS position.";
+      return "Drive on; if the reason stays, compare the map's origin with the GNSS position.";
     case Why::kMatchRejected:
       return "Check the calibration of the cameras and the scale of the wheel speed.";
     case Why::kPoseUncertain:
-      return "Drive on to where the road has markings; if it stays, check the odometry.";
+      return "Drive on to where the road has markings; if the reason stays, check the odometry.";
     case Why::kPoseStale:
-      return "See the other reasons; without any, the cameras see nothing that the map has.";
+      return "See the other reasons; if there is none, the cameras see nothing that the map has.";
     case Why::kPoseInvalid:
       return "Send the journal to the developers and restart the service.";
     case Why::kOverload:
@@ -66,13 +66,14 @@ const char* advice_for(Why why) {
       return "A camera is not where the calibration has it, or the time stamps are wrong; the log "
              "says which: check its mount or the clocks.";
     case Why::kNetworkFault:
-      return "The network computes wrong results: restart; if it returns, replace the computer.";
+      return "The network computes wrong results: restart; if the reason returns, replace the "
+             "computer.";
     case Why::kInternalFault:
       return "Send the journal to the developers and restart the service.";
     case Why::kGnssContradicts:
-      return "Check the antenna's position; tall buildings and tunnels pass by themselves.";
+      return "Check the antenna's position; a disturbance by buildings or a tunnel ends by itself.";
     case Why::kOdometryContradicts:
-      return "Check the wheel speed and the yaw rate; slipping wheels pass by themselves.";
+      return "Check the wheel speed and the yaw rate; the slip of a wheel ends by itself.";
     case Why::kMatchContradicts:
       return "Check that map and calibration belong to this place and this vehicle.";
     case Why::kClockGap:

@@ -5,10 +5,6 @@
 namespace bevloc::firmware {
 namespace {
 
-double milliseconds(Duration duration) {
-  return 1e3 * to_seconds(duration);
-}
-
 void log_frames(const FrameCounts& frames) {
   spdlog::info(
       "stopped: {} frames captured, {} used, {} dropped ({} displaced by newer frames, {} without "
@@ -36,13 +32,13 @@ void log_framesets(const FramesetsSnapshot& framesets,
   spdlog::info(
       "framesets: spread at most {:.3f} ms; {} taken, {} without a prior, {} with too few readable "
       "images; network checked {} times",
-      milliseconds(framesets.spread_max), framesets.taken, framesets.no_prior, framesets.refused,
+      to_milliseconds(framesets.spread_max), framesets.taken, framesets.no_prior, framesets.refused,
       framesets.network_checks);
   if (!trigger) return;
   spdlog::info(
       "trigger: {} pulses, at most {:.3f} ms late, {} skipped, {} failed; {} framesets without a "
       "pulse",
-      trigger->pulses, milliseconds(trigger->max_lateness), trigger->skipped, trigger->failed,
+      trigger->pulses, to_milliseconds(trigger->max_lateness), trigger->skipped, trigger->failed,
       framesets.off_pulse);
 }
 
@@ -64,12 +60,12 @@ void log_tracker(const char* input, const OutcomeCounts& outcomes) {
 
 void log_bus(const can::BusCounters& bus) {
   const double mean_ms = bus.confirmed == 0 ? 0.0
-                                            : milliseconds(bus.confirmation_total) /
+                                            : to_milliseconds(bus.confirmation_total) /
                                                   static_cast<double>(bus.confirmed);
   spdlog::info(
       "CAN: {} sent, {} confirmed after {:.2f} ms on average and {:.2f} ms at most; dropped: {} "
       "replaced by newer frames, {} too old, {} while the bus was down",
-      bus.sent, bus.confirmed, mean_ms, milliseconds(bus.confirmation_max), bus.send_replaced,
+      bus.sent, bus.confirmed, mean_ms, to_milliseconds(bus.confirmation_max), bus.send_replaced,
       bus.send_expired, bus.send_bus_down);
   spdlog::info(
       "CAN: {} received ({} timestamped by the controller, {} by the kernel), {} lost, {} overruns "
@@ -100,7 +96,7 @@ void log_gnss(const GnssCounters& gnss) {
       "accuracy or time, {} not of satellites, {} out of range, {} not readable or too long; fixes "
       "refused: {} to learn the delay, {} repeated, {} stale, {} from the future, {} while the "
       "clock was not synchronized; connected {} times, {} attempts failed, silent {} times",
-      gnss.samples, milliseconds(gnss.max_age), gnss.of(GpsdLine::kNoFix),
+      gnss.samples, to_milliseconds(gnss.max_age), gnss.of(GpsdLine::kNoFix),
       gnss.of(GpsdLine::kNoAccuracy) + gnss.of(GpsdLine::kNoTime),
       gnss.of(GpsdLine::kNotSatellites), gnss.of(GpsdLine::kOutOfRange),
       gnss.of(GpsdLine::kNotReadable) + gnss.gpsd.too_long, gnss.of(FixVerdict::kLearning),

@@ -4,16 +4,13 @@
 
 namespace bevloc::firmware {
 
-void ViewLog::note(const ApplianceView& view) {
+void ViewLog::note(const ApplianceView& view, Time now) {
   // The state LOST lasts one bus cycle, and most views are taken before or after it.
   if (view.lost != before_.lost) spdlog::warn("pose lost: {}", to_string(view.lost_why));
-  if (view.state != before_.state) {
-    const std::string why = to_string(view.why);
-    spdlog::info("state {} -> {}{}{}", to_string(before_.state), to_string(view.state),
-                 why.empty() ? "" : ": ", why);
-  }
-  if (view.bus != before_.bus) {
-    spdlog::warn("CAN {} -> {}", can::to_string(before_.bus), can::to_string(view.bus));
+  note_state(view, now);
+  if (const auto change =
+          bus_conditions_.note(can::to_string(view.bus), "", ChangeKind::kMayAlternate, now)) {
+    spdlog::warn("CAN {}", *change);
   }
   if (view.hung != before_.hung) {
     if (view.hung.empty()) {
@@ -39,6 +36,14 @@ void ViewLog::note(const ApplianceView& view) {
       "out of place, it is not where the calibration has it",
       "check its mount and whether it is connected in another camera's place, then calibrate");
   before_ = view;
+}
+
+void ViewLog::note_state(const ApplianceView& view, Time now) {
+  const bool may_alternate = claims_pose(before_.state) && claims_pose(view.state);
+  const auto change =
+      states_.note(to_string(view.state), to_string(view.why),
+                   may_alternate ? ChangeKind::kMayAlternate : ChangeKind::kImportant, now);
+  if (change) spdlog::info("state {}", *change);
 }
 
 void ViewLog::note_drifts(const ApplianceView& view) {

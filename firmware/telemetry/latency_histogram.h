@@ -48,7 +48,7 @@ struct LatencyCounts {
 class LatencyHistogram {
  public:
   void add(Duration latency) {
-    const double latency_ms = 1e3 * to_seconds(latency);
+    const double latency_ms = to_milliseconds(latency);
     size_t range = 0;
     while (range < LatencyCounts::kUpper_ms.size() &&
            latency_ms > LatencyCounts::kUpper_ms[range]) {

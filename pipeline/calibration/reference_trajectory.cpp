@@ -48,7 +48,8 @@ Result<ReferenceTrajectory> ReferenceTrajectory::parse(const std::string& text,
     pose.yaw_rad = wrap_angle(radians(yaw_deg));
     const Time time{Duration(time_ns)};
     if (!poses.empty() && time <= poses.back().time) {
-      return fail("{}:{}: found a time that does not increase", name, number);
+      return fail("{}:{}: found a time that does not increase, wanted later times in later lines",
+                  name, number);
     }
     poses.push_back({time, pose});
   }

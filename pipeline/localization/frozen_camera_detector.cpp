@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cstring>
 
+#include "common/mix.h"
+
 namespace bevloc {
 namespace {
 
@@ -19,16 +21,9 @@ inline void add(const int8_t* from, Words& sums) {
   sums = ((sums << 5) | (sums >> 27)) + words;
 }
 
-/// The finaliser of Steele, Lea and Flood: "Fast Splittable Pseudorandom Number Generators".
-uint64_t mix(uint64_t value) {
-  value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9U;
-  value = (value ^ (value >> 27)) * 0x94d049bb133111ebU;
-  return value ^ (value >> 31);
-}
-
 uint64_t digest_of(const ImageChecksum& checksum) {
   uint64_t digest = 0;
-  for (const uint32_t word : checksum) digest = mix(digest + 0x9e3779b97f4a7c15U + word);
+  for (const uint32_t word : checksum) digest = mix_bits(digest + 0x9e3779b97f4a7c15U + word);
   return digest;
 }
 

@@ -13,13 +13,26 @@ namespace {
 constexpr double kSameMotion_m = 0.01;
 constexpr double kSameMotion_rad = radians(0.02);
 
-/// Largest error of the solvers on the test frame.
+/// Largest error of the solvers on the test frame, where the known correction is a hypothesis.
 constexpr double kSolverTolerance_m = 0.2;
 constexpr double kSolverTolerance_rad = radians(0.5);
 
 bool is_same(const Se2& a, const Se2& b) {
   return (a.translation() - b.translation()).norm() <= kSameMotion_m &&
          std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) <= kSameMotion_rad;
+}
+
+/// By how many cells the test frame is moved along an axis: by about one step, because a shorter
+/// movement cannot be told from none. Along an axis with a narrow range it is not moved.
+int cells_to_move(const HypothesisAxis& axis, double cell_m) {
+  if (axis.farthest() <= 1.3 * cell_m) return 0;
+  return std::max(1, static_cast<int>(std::lround(axis.step / cell_m)));
+}
+
+/// The distance from the correction to the nearest hypothesis, by which a solver may miss it.
+double distance_to_hypotheses(const HypothesisGrid& hypotheses, const Eigen::Vector2d& correction) {
+  return std::hypot(std::remainder(correction.x(), hypotheses.x_m.step),
+                    std::remainder(correction.y(), hypotheses.y_m.step));
 }
 
 }  // namespace
@@ -62,8 +75,7 @@ Localizer::Localizer(const Rig& rig, const MapIndex& map, std::unique_ptr<Networ
     view_monitor_.set_shown(camera, preprocessors_.back().shown_pixels());
   }
   if (options.online_calibration.enabled) {
-    online_calibration_.emplace(calibrated_rig_, kFeatureGrid, network_->bev_features().channels,
-                                options.online_calibration);
+    online_calibration_.emplace(calibrated_rig_, kFeatureGrid, options.online_calibration);
   }
 }
 
@@ -83,7 +95,7 @@ CameraMask Localizer::localize(const CameraImages& images, const Se2& prior, Sea
 void Localizer::learn(const CameraImages& images, CameraMask usable, SearchRange range,
                       const Se2& prior, const SolverResult& result) {
   const Solver& solver = *solvers_[static_cast<size_t>(range)];
-  const bool changed = online_calibration_->observe({.cells = {.bev = solver.bev_cells(),
+  const bool changed = online_calibration_->observe({.cells = {.moved = solver.moved_cells(),
                                                                .map = solver.map_cells(),
                                                                .view = view_table_,
                                                                .rig = network_rig_,
@@ -151,11 +163,10 @@ Status Localizer::check() {
 Status Localizer::check_solver(SearchRange range) {
   const FeatureView map = network_->map_features();
   const BevGrid& grid = map.grid;
-  // The features of the map as seen from one cell further ahead and to the left. Along an axis with
-  // a narrow range they are not moved.
+  // The features of the map as seen from some cells further ahead and to the left.
   const HypothesisGrid& searched = hypotheses(range);
-  const int rows = searched.x_m.farthest() > 1.3 * grid.cell_m ? 1 : 0;
-  const int cols = searched.y_m.farthest() > 1.3 * grid.cell_m ? 1 : 0;
+  const int rows = cells_to_move(searched.x_m, grid.cell_m);
+  const int cols = cells_to_move(searched.y_m, grid.cell_m);
   for (int channel = 0; channel < map.channels; ++channel) {
     for (int row = 0; row < grid.rows; ++row) {
       const int to = (channel * grid.rows + row) * grid.cols;
@@ -167,9 +178,10 @@ Status Localizer::check_solver(SearchRange range) {
   }
   solvers_[static_cast<size_t>(range)]->solve({shifted_, map.channels, grid}, map, check_solution_);
   const Eigen::Vector2d wanted(rows * grid.cell_m, cols * grid.cell_m);
+  const double tolerance_m = kSolverTolerance_m + distance_to_hypotheses(searched, wanted);
   const Se2& found = check_solution_.correction;
   if (check_solution_.evidence == Evidence::kGood &&
-      (found.translation() - wanted).norm() <= kSolverTolerance_m &&
+      (found.translation() - wanted).norm() <= tolerance_m &&
       std::abs(found.yaw_rad) <= kSolverTolerance_rad) {
     return {};
   }

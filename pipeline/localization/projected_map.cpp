@@ -37,14 +37,13 @@ std::span<const ProjectedLine> ProjectedMap::around(const Se2& map_from_vehicle,
   const MapIndex::Segment* previous = nullptr;
   for (const MapIndex::Segment& segment : found_) {
     const MapElement& element = map_.map().elements[segment.element];
-    const size_t next = (segment.first + 1) % element.points.size();
     const bool goes_on = previous != nullptr && previous->element == segment.element &&
                          previous->first + 1 == segment.first;
     if (!goes_on) {
       around_.push_back(
           {element.element_class, {vehicle_from_map * element.points[segment.first]}});
     }
-    around_.back().points.push_back(vehicle_from_map * element.points[next]);
+    around_.back().points.push_back(vehicle_from_map * segment_end(element, segment.first));
     previous = &segment;
   }
   return around_;

@@ -20,7 +20,7 @@ constexpr std::array kClassNames{
 };
 
 /// The names in the order of the enumerators.
-constexpr std::array<std::string_view, 13> kAppearanceNames{
+constexpr std::array<std::string_view, kAppearances> kAppearanceNames{
     "unknown",   "solid",   "dashed",     "double solid", "zebra", "ladder", "kerb",
     "road edge", "barrier", "guard rail", "wall",         "fence", "hedge"};
 

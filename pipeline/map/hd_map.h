@@ -1,6 +1,7 @@
 // The HD map in memory, independent of the file format.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@ namespace bevloc {
 
 /// The paper's classes, in the order of the raster channels.
 enum class ElementClass : uint8_t { kLaneDivider = 0, kPedestrianCrossing = 1, kRoadBoundary = 2 };
+/// The number of classes.
+inline constexpr size_t kElementClasses = static_cast<size_t>(ElementClass::kRoadBoundary) + 1;
 
 /// How an element looks. The localizer does not use it, because a raster shows only the class. The
 /// simulator paints and builds the element accordingly.
@@ -32,6 +35,13 @@ enum class Appearance : uint8_t {
   kFence,
   kHedge,
 };
+/// The number of appearances.
+inline constexpr size_t kAppearances = static_cast<size_t>(Appearance::kHedge) + 1;
+
+/// Whether the points of such an element are the corners of a ring.
+constexpr bool is_ring(ElementClass element_class) {
+  return element_class == ElementClass::kPedestrianCrossing;
+}
 
 /// One line or polygon on the ground, in the map frame (metres east and north of the origin).
 struct MapElement {
@@ -40,6 +50,18 @@ struct MapElement {
   /// Polyline of a divider or boundary; ring of a crossing, without a repeated first corner.
   std::vector<Eigen::Vector2d> points;
 };
+
+/// The number of segments. Segment i begins at point i; the last one of a ring closes it.
+inline size_t segment_count(const MapElement& element) {
+  const size_t count = element.points.size();
+  if (is_ring(element.element_class) && count > 2) return count;
+  return count > 0 ? count - 1 : 0;
+}
+
+/// The end of the segment that begins at point `first`.
+inline const Eigen::Vector2d& segment_end(const MapElement& element, size_t first) {
+  return element.points[(first + 1) % element.points.size()];
+}
 
 /// A lane for vehicles. The simulator plans routes along lanes; the localizer does not use them.
 struct Lane {

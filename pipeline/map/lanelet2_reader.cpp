@@ -124,9 +124,9 @@ class Lanelet2Reader {
     const std::string where =
         fmt::format("lanelet {} (line {})", lanelet.relation->id, lanelet.relation->line);
     if (area_of_ring_m2(crossing.points) < kLeastCrossing_m2) {
-      map_.left_out.push_back(
-          fmt::format("{}:{}: lanelet {}: found bounds without an area between, wanted a crossing",
-                      document_.file, lanelet.relation->line, lanelet.relation->id));
+      map_.left_out.push_back(fmt::format(
+          "{}:{}: lanelet {}: found bounds without an area between them, wanted a crossing",
+          document_.file, lanelet.relation->line, lanelet.relation->id));
       report_.note("lanelet crosswalk", std::nullopt, "left out, see below", 0.0, where);
       return;
     }
@@ -146,7 +146,7 @@ class Lanelet2Reader {
     std::string_view why = rule != nullptr ? "by the class table" : "";
     double length_m = length_of(element);
     if (meaning) {
-      const bool was_ring = element.element_class == ElementClass::kPedestrianCrossing;
+      const bool was_ring = is_ring(element.element_class);
       element.element_class = meaning->element_class;
       element.appearance = meaning->appearance;
       if (was_ring) close(element.points, heights_m);

@@ -169,10 +169,11 @@ Eigen::Vector2d median_point(const std::vector<Eigen::Vector2d>& points) {
 }
 
 double length_of(const MapElement& element) {
-  const double length_m = polyline_length(element.points);
-  const bool is_ring =
-      element.element_class == ElementClass::kPedestrianCrossing && element.points.size() > 2;
-  return is_ring ? length_m + (element.points.front() - element.points.back()).norm() : length_m;
+  double length_m = 0.0;
+  for (size_t i = 0; i < segment_count(element); ++i) {
+    length_m += (segment_end(element, i) - element.points[i]).norm();
+  }
+  return length_m;
 }
 
 double area_of_ring_m2(const Polyline& ring) {

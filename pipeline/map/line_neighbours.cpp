@@ -21,12 +21,6 @@ constexpr double kSpacing_m = 0.5;
 using BoostPoint = geometry::model::point<double, 2, geometry::cs::cartesian>;
 using Box = geometry::model::box<BoostPoint>;
 
-struct Segment {
-  Eigen::Vector2d from;
-  Eigen::Vector2d to;
-  int64_t id;
-};
-
 Box box_of(const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
   return {{low.x(), low.y()}, {high.x(), high.y()}};
 }
@@ -46,6 +40,11 @@ void for_each_point(const std::vector<Eigen::Vector2d>& line, Visit visit) {
 }  // namespace
 
 struct LineNeighbours::Index {
+  struct Segment {
+    Eigen::Vector2d from;
+    Eigen::Vector2d to;
+    int64_t id;
+  };
   using Entry = std::pair<Box, size_t>;
 
   std::vector<Segment> segments;
@@ -71,7 +70,7 @@ double LineNeighbours::share_beside(const std::vector<Eigen::Vector2d>& line, do
   for_each_point(line, [&](const Eigen::Vector2d& point) {
     ++points;
     const auto is_near = geometry::index::satisfies([&](const Index::Entry& entry) {
-      const Segment& segment = index_->segments[entry.second];
+      const Index::Segment& segment = index_->segments[entry.second];
       return counts(segment.id) && distance_to_segment(point, segment.from, segment.to) <= reach_m;
     });
     const Box around = box_of(point - reach, point + reach);

@@ -17,12 +17,11 @@ constexpr size_t kVersionOffset = kMapMagic.size();
 constexpr size_t kSizeOffset = kVersionOffset + sizeof(uint16_t);
 constexpr size_t kHeaderSize = kSizeOffset + sizeof(uint32_t);
 constexpr size_t kCrcSize = sizeof(uint32_t);
+
 MapElement decode_element(CompactDecoder& decoder) {
-  constexpr auto kClasses = static_cast<uint64_t>(ElementClass::kRoadBoundary) + 1;
-  constexpr auto kAppearances = static_cast<uint64_t>(Appearance::kHedge) + 1;
   MapElement element;
   element.element_class =
-      static_cast<ElementClass>(decoder.number_below(kClasses, "an unknown class"));
+      static_cast<ElementClass>(decoder.number_below(kElementClasses, "an unknown class"));
   element.appearance =
       static_cast<Appearance>(decoder.number_below(kAppearances, "an unknown appearance"));
   element.points = decoder.polyline();

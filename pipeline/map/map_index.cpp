@@ -28,15 +28,9 @@ std::vector<Entry> segments_of(const HdMap& map) {
   std::vector<Entry> entries;
   for (uint32_t e = 0; e < map.elements.size(); ++e) {
     const MapElement& element = map.elements[e];
-    const auto count = static_cast<uint32_t>(element.points.size());
-    const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing && count > 2;
-    for (uint32_t i = 0; i + 1 < count; ++i) {
-      entries.emplace_back(box_around(element.points[i], element.points[i + 1]),
+    for (uint32_t i = 0; i < segment_count(element); ++i) {
+      entries.emplace_back(box_around(element.points[i], segment_end(element, i)),
                            MapIndex::Segment{e, i});
-    }
-    if (is_ring) {
-      entries.emplace_back(box_around(element.points.back(), element.points.front()),
-                           MapIndex::Segment{e, count - 1});
     }
   }
   return entries;

@@ -5,10 +5,9 @@
 #include <cstring>
 #include <unordered_set>
 
-#include <pugixml.hpp>
-
 #include "common/number_text.h"
 #include "pipeline/map/text_lines.h"
+#include "pipeline/map/xml_root.h"
 
 namespace bevloc {
 namespace {
@@ -57,9 +56,9 @@ class OsmReader {
     return std::move(document_);
   }
 
+ private:
   int line_of(const pugi::xml_node& node) const { return lines_.line_at(node.offset_debug()); }
 
- private:
   /// An attribute that contains an id.
   Result<int64_t> id_in(const pugi::xml_node& element, const char* attribute) const {
     const std::string_view text = element.attribute(attribute).value();
@@ -174,19 +173,9 @@ std::string_view tag_value(const OsmTags& tags, std::string_view key) {
 
 Result<OsmDocument> parse_osm(std::string_view text, std::string file) {
   pugi::xml_document xml;
-  const pugi::xml_parse_result parsed =
-      xml.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
-  if (!parsed) {
-    return fail("{}:{}: found text that is not XML ({}), wanted OSM XML", file,
-                LineFinder(text).line_at(parsed.offset), parsed.description());
-  }
-  OsmReader reader(text, file);
-  const pugi::xml_node root = xml.document_element();
-  if (std::strcmp(root.name(), "osm") != 0) {
-    return fail("{}:{}: found <{}> as the outermost element, wanted <osm>", file,
-                reader.line_of(root), root.name());
-  }
-  return reader.read(root);
+  const auto root = parse_xml(text, file, {.name = "OSM", .root = "osm"}, xml);
+  if (!root) return tl::unexpected(root.error());
+  return OsmReader(text, std::move(file)).read(*root);
 }
 
 }  // namespace bevloc

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "pipeline/map/cell_segment.h"
+
 namespace bevloc {
 namespace {
 
@@ -14,13 +16,13 @@ constexpr double kOuterRadiusCells = 0.5 * kRasterLineWidthCells + 0.5;
 constexpr double kClipMarginCells = kOuterRadiusCells + 1.0;
 
 /// A segment in cells: x() is the column, y() the row. Integers are cell centres.
-struct CellSegment {
+struct RasterSegment {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
 };
 
 /// The part of a segment inside the raster and its margin (Liang-Barsky clipping).
-std::optional<CellSegment> clip_to_raster(const CellSegment& segment) {
+std::optional<RasterSegment> clip_to_raster(const RasterSegment& segment) {
   const Eigen::Vector2d low = Eigen::Vector2d::Constant(-kClipMarginCells);
   const Eigen::Vector2d high(kRasterGrid.cols - 1 + kClipMarginCells,
                              kRasterGrid.rows - 1 + kClipMarginCells);
@@ -39,7 +41,7 @@ std::optional<CellSegment> clip_to_raster(const CellSegment& segment) {
     leave = std::min(leave, std::max(at_low, at_high));
   }
   if (enter > leave) return std::nullopt;
-  return CellSegment{segment.from + enter * direction, segment.from + leave * direction};
+  return RasterSegment{segment.from + enter * direction, segment.from + leave * direction};
 }
 
 /// The columns of one row that a segment may cover, from `first` to `last`; empty if first > last.
@@ -48,7 +50,7 @@ struct ColumnSpan {
   int last;
 };
 
-ColumnSpan covered_columns(const CellSegment& segment, int row) {
+ColumnSpan covered_columns(const RasterSegment& segment, int row) {
   const Eigen::Vector2d direction = segment.to - segment.from;
   double begin = 0.0;
   double end = 1.0;
@@ -67,21 +69,12 @@ ColumnSpan covered_columns(const CellSegment& segment, int row) {
 }
 
 /// Raises each cell of a row to its coverage by the segment, which depends on the distance.
-void draw_row(const CellSegment& segment, int row, const ColumnSpan& span, uint8_t* cells) {
-  const auto from_col = static_cast<float>(segment.from.x());
-  const auto from_row = static_cast<float>(segment.from.y());
-  const auto d_col = static_cast<float>(segment.to.x() - segment.from.x());
-  const auto d_row = static_cast<float>(segment.to.y() - segment.from.y());
-  const float length_squared = d_col * d_col + d_row * d_row;
-  const float per_length_squared = length_squared > 0.0F ? 1.0F / length_squared : 0.0F;
-  const float to_row = static_cast<float>(row) - from_row;
+void draw_row(const RasterSegment& segment, int row, const ColumnSpan& span, uint8_t* cells) {
+  const CellSegment line(static_cast<float>(segment.from.x()), static_cast<float>(segment.from.y()),
+                         static_cast<float>(segment.to.x() - segment.from.x()),
+                         static_cast<float>(segment.to.y() - segment.from.y()));
   for (int col = span.first; col <= span.last; ++col) {
-    const float to_col = static_cast<float>(col) - from_col;
-    const float along =
-        std::min(std::max((to_col * d_col + to_row * d_row) * per_length_squared, 0.0F), 1.0F);
-    const float off_col = to_col - along * d_col;
-    const float off_row = to_row - along * d_row;
-    const float distance = std::sqrt(off_col * off_col + off_row * off_row);
+    const float distance = line.nearest(col, row).distance;
     const float cover =
         std::min(std::max(static_cast<float>(kOuterRadiusCells) - distance, 0.0F), 1.0F);
     const auto value = static_cast<uint8_t>(static_cast<int>(cover * 255.0F + 0.5F));
@@ -90,7 +83,7 @@ void draw_row(const CellSegment& segment, int row, const ColumnSpan& span, uint8
 }
 
 /// Draws one segment with round ends, so that polylines have no gaps at their joints.
-void draw_segment(const CellSegment& segment, uint8_t* channel) {
+void draw_segment(const RasterSegment& segment, uint8_t* channel) {
   const double top = std::min(segment.from.y(), segment.to.y()) - kOuterRadiusCells;
   const double bottom = std::max(segment.from.y(), segment.to.y()) + kOuterRadiusCells;
   const int first_row = std::max(0, static_cast<int>(std::ceil(top)));
@@ -146,13 +139,9 @@ void MapRasterizer::draw(const Se2& map_from_vehicle, std::span<uint8_t> raster)
   for (const MapIndex::Segment& found : found_) {
     const MapElement& element = index_.map().elements[found.element];
     const auto& points = element.points;
-    if (element.element_class == ElementClass::kPedestrianCrossing &&
-        !is_long_edge(points, found.first)) {
-      continue;
-    }
-    const Eigen::Vector2d& from = points[found.first];
-    const Eigen::Vector2d& to = points[(found.first + 1) % points.size()];
-    const auto visible = clip_to_raster({cell_of(from), cell_of(to)});
+    if (is_ring(element.element_class) && !is_long_edge(points, found.first)) continue;
+    const auto visible =
+        clip_to_raster({cell_of(points[found.first]), cell_of(segment_end(element, found.first))});
     if (!visible) continue;
     draw_segment(*visible,
                  raster.data() + static_cast<size_t>(element.element_class) * kRasterGrid.cells());

@@ -1,6 +1,9 @@
 #include "pipeline/network/network.h"
 
 #include <algorithm>
+#include <ranges>
+
+#include <fmt/ranges.h>
 
 #include "common/number_text.h"
 #include "pipeline/network/model/load_error.h"
@@ -49,9 +52,8 @@ std::vector<Contract> output_contracts() {
 }
 
 std::string names_of(const std::vector<nn::Port>& ports) {
-  std::string names;
-  for (const nn::Port& port : ports) names += (names.empty() ? "" : ", ") + port.name;
-  return names.empty() ? "none" : names;
+  if (ports.empty()) return "none";
+  return fmt::format("{}", fmt::join(ports | std::views::transform(&nn::Port::name), ", "));
 }
 
 void check_ports(const std::vector<nn::Port>& ports, const std::vector<Contract>& contracts,
@@ -128,8 +130,8 @@ void check_independence(const nn::Program& program, const char* output, const ch
   }
 }
 
-/// The view table's indices count the features of all cameras, so the model must have exactly
-/// these.
+/// The view table's indices count the features of all cameras, so the features of the model must
+/// have exactly this number and size.
 void check_view_features(const nn::Program& program) {
   for (const nn::Step& step : program.steps) {
     const auto* view = std::get_if<nn::ViewStep>(&step);

@@ -6,19 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "common/mix.h"
 #include "pipeline/preprocessing/network_camera.h"
 
 namespace bevloc {
 namespace {
 
 constexpr double kTolerance = 0.03;
-
-/// The finaliser of Steele, Lea and Flood: "Fast Splittable Pseudorandom Number Generators".
-uint64_t mix(uint64_t value) {
-  value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9U;
-  value = (value ^ (value >> 27)) * 0x94d049bb133111ebU;
-  return value ^ (value >> 31);
-}
 
 /// Draws stripes of several widths and directions, with other ones in each plane.
 void draw_images(std::span<int8_t> images) {
@@ -68,7 +62,7 @@ FeatureAnswer condense(std::span<const float> features) {
   double squares = 0.0;
   for (size_t i = 0; i < features.size(); ++i) {
     const auto value = static_cast<double>(features[i]);
-    const uint64_t bits = mix(i + 1);
+    const uint64_t bits = mix_bits(i + 1);
     squares += value * value;
     for (int k = 0; k < FeatureAnswer::kSums; ++k) {
       answer.sums[k] += ((bits >> k) & 1U) != 0 ? value : -value;

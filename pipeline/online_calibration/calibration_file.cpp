@@ -20,11 +20,7 @@ constexpr std::string_view kChecksumKey = "crc32: ";
 constexpr size_t kTriangle = static_cast<size_t>(kExtrinsicErrors) * (kExtrinsicErrors + 1) / 2;
 
 std::string list_of(const std::vector<double>& numbers) {
-  std::string text;
-  for (const double number : numbers) {
-    text += fmt::format("{}{:.17g}", text.empty() ? "" : ", ", number);
-  }
-  return "[" + text + "]";
+  return fmt::format("[{:.17g}]", fmt::join(numbers, ", "));
 }
 
 }  // namespace
@@ -57,7 +53,8 @@ Result<LearnedCalibration> parse_learned(const std::string& text, const std::str
   const auto checksum = yaml->require<uint32_t>("crc32");
   const size_t end = text.rfind(kChecksumKey);
   if (end != std::string::npos && crc32(std::string_view(text).substr(0, end)) != checksum) {
-    yaml->reject("crc32", "another content than was written", "the file as bevlocd wrote it");
+    yaml->reject("crc32", "content that does not fit this checksum",
+                 "the file as bevlocd wrote it");
   }
   if (Status status = yaml->finish(); !status) return tl::unexpected(status.error());
   learned.errors = ExtrinsicErrors(errors.data());
@@ -81,8 +78,8 @@ Result<LearnedCalibration> load_learned(const std::filesystem::path& path, uint3
   auto learned = parse_learned(*text, path.string());
   if (learned && learned->rig_crc32 != rig_crc32) {
     return fail(
-        "{}: found what was learned about another rig ({:08x}), wanted {:08x}; it is not "
-        "used, and will be replaced",
+        "{}: found errors that were learned for another rig ({:08x}), wanted {:08x}; this file is "
+        "not used, and will be replaced",
         path.string(), learned->rig_crc32, rig_crc32);
   }
   return learned;

@@ -1,13 +1,14 @@
 #include "pipeline/online_calibration/extrinsic_sums.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "common/target_clones.h"
-#include "pipeline/solver/feature_warp.h"
+#include "pipeline/solver/cell_rows.h"
 
 namespace bevloc {
 namespace {
@@ -16,7 +17,8 @@ namespace {
 constexpr int kBlockCells = 3;
 /// Cells at each edge of the grid that are not used.
 constexpr int kBorderCells = 2;
-/// Cells that hardly any camera sees carry no features.
+/// A block is used only if the shares of all cameras sum to at least this, because cells that no
+/// camera sees carry no features.
 constexpr double kLeastShare = 0.99;
 /// The weight along the ray of sight falls to 0 at this distance from the camera. A pitch error
 /// moves a point at distance d by the error times d^2 / height: by 0.9 m for 0.3 degrees at 16 m,
@@ -45,34 +47,23 @@ struct BlockSums {
   float moved_square = 0.0F;
 };
 
-/// Both sides at the first cell of a block.
-struct BlockFeatures {
-  const float* map;
-  const float* moved;
-  std::ptrdiff_t map_row_stride;
-  std::ptrdiff_t moved_row_stride;
-  int lanes;
-};
-
-BEVLOC_TARGET_CLONES BlockSums sum_block(const BlockFeatures& block) {
+/// `block` are both sides at the first cell of the block.
+BEVLOC_TARGET_CLONES BlockSums sum_block(const CellRows& block) {
   Lanes xx = {}, xy = {}, yy = {}, slope_x = {}, slope_y = {};
   Lanes product = {}, map_square = {}, moved_square = {};
   for (int row = 0; row < kBlockCells; ++row) {
     for (int i = 0; i < kBlockCells * block.lanes; i += kLanes) {
       const float* m = block.map + row * block.map_row_stride + i;
       const float* b = block.moved + row * block.moved_row_stride + i;
-      // Rows grow towards -x and columns towards -y.
-      const Lanes map_x = lanes(m - block.map_row_stride) - lanes(m + block.map_row_stride);
-      const Lanes map_y = lanes(m - block.lanes) - lanes(m + block.lanes);
-      const Lanes moved_x = lanes(b - block.moved_row_stride) - lanes(b + block.moved_row_stride);
-      const Lanes moved_y = lanes(b - block.lanes) - lanes(b + block.lanes);
+      const Slope map_slope = slope_at(m, block.map_row_stride, block.lanes);
+      const Slope moved_slope = slope_at(b, block.moved_row_stride, block.lanes);
       const Lanes& map = lanes(m);
       const Lanes& moved = lanes(b);
-      xx += map_x * map_x;
-      xy += map_x * map_y;
-      yy += map_y * map_y;
-      slope_x += moved * map_x - map * moved_x;
-      slope_y += moved * map_y - map * moved_y;
+      xx += map_slope.x * map_slope.x;
+      xy += map_slope.x * map_slope.y;
+      yy += map_slope.y * map_slope.y;
+      slope_x += moved * map_slope.x - map * moved_slope.x;
+      slope_y += moved * map_slope.y - map * moved_slope.y;
       product += map * moved;
       map_square += map * map;
       moved_square += moved * moved;
@@ -129,21 +120,13 @@ double near_weight_of(const Se3& vehicle_from_camera, const Eigen::Vector2d& poi
 
 }  // namespace
 
-ExtrinsicSums::ExtrinsicSums(const BevGrid& grid, int channels)
-    : grid_(grid),
-      lanes_(round_up_to_lanes(channels)),
-      moved_(static_cast<size_t>(grid.cells()) * lanes_) {}
-
 void ExtrinsicSums::compute(const MatchedCells& match, ExtrinsicInformation& result) {
+  assert(match.moved.size() == static_cast<size_t>(grid_.cells()) * match.map.lanes());
   result.information.setZero();
   result.slope.setZero();
   information_.setZero();
   slope_.setZero();
   result.seen = {};
-  const FeatureWarp moved(match.bev, match.correction);
-  for (int row = 0; row < grid_.rows; ++row) {
-    warp(moved.line(row, 0, grid_.cols), moved_.data() + row * grid_.cols * lanes_);
-  }
   for (int row = kBorderCells; row + kBlockCells + kBorderCells <= grid_.rows; row += kBlockCells) {
     for (int col = kBorderCells; col + kBlockCells + kBorderCells <= grid_.cols;
          col += kBlockCells) {
@@ -166,13 +149,7 @@ void ExtrinsicSums::add_block(const MatchedCells& match, int first_row, int firs
                               std::array<SeenByCamera, kCameraCount>& seen) {
   const BlockView view = view_block(match, first_row, first_col);
   if (view.cameras == 0) return;
-  const std::ptrdiff_t moved_row = static_cast<std::ptrdiff_t>(grid_.cols) * lanes_;
-  const BlockSums sums =
-      sum_block({.map = match.map.cell(first_row, first_col),
-                 .moved = moved_.data() + first_row * moved_row + first_col * lanes_,
-                 .map_row_stride = match.map.row_stride(),
-                 .moved_row_stride = moved_row,
-                 .lanes = lanes_});
+  const BlockSums sums = sum_block(rows_at(match.map, match.moved, first_row, first_col));
   for (int part = 0; part < view.cameras; ++part) {
     const double weight = view.near_weight * view.shares[part];
     SeenByCamera& sum = seen[view.seen_by[part]];

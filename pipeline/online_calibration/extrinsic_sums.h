@@ -25,11 +25,12 @@ struct ExtrinsicInformation {
 
 /// The features of one match.
 struct MatchedCells {
-  const CellFeatures& bev;  ///< standardised, with a margin for the correction
+  /// Standardised BEV features, moved by `correction`: [row, col, lanes] on the grid of `map`.
+  const LaneBuffer& moved;
   const CellFeatures& map;  ///< standardised
-  const ViewTable& view;    ///< the table that `bev` was computed with
+  const ViewTable& view;    ///< the table that the BEV features were computed with
   const Rig& rig;           ///< the network rig that `view` was computed with
-  Se2 correction;           ///< correction that aligns `bev` with `map`
+  Se2 correction;           ///< correction that aligns the BEV features with `map`
 };
 
 /// Compares the positions of the lines that each camera sees with their positions in the map.
@@ -45,10 +46,10 @@ struct MatchedCells {
 /// The equations also contain the correction of the match, which is eliminated. A match therefore
 /// does not show camera errors whose effect equals a shift or a turn of the vehicle.
 ///
-/// The constructor allocates all memory. One thread.
+/// Allocates nothing. One thread.
 class ExtrinsicSums {
  public:
-  ExtrinsicSums(const BevGrid& grid, int channels);
+  explicit ExtrinsicSums(const BevGrid& grid) : grid_(grid) {}
 
   /// The result is all zero, so that nothing is learned, if the features do not determine the
   /// correction.
@@ -86,8 +87,6 @@ class ExtrinsicSums {
   void eliminate_pose(ExtrinsicInformation& result) const;
 
   BevGrid grid_;
-  int lanes_;
-  LaneBuffer moved_;  ///< the moved BEV features, [row, col, lanes]
   Matrix information_;
   Vector slope_;
 };

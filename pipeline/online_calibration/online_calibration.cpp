@@ -20,9 +20,9 @@ constexpr double kLargestYawSigma_rad = radians(0.6);
 /// The used errors follow the estimate when it has moved by more than this.
 constexpr double kStep_rad = radians(0.03);
 constexpr double kStep_m = 0.005;
-/// They follow no faster than this per second of learning. A street that contradicts the map for
-/// some seconds (grass on the kerb, wrong time stamps) would otherwise bend the calibration at
-/// once.
+/// The used errors change no faster than this per second of learning. A street that contradicts the
+/// map for some seconds (grass on the kerb, wrong time stamps) would otherwise bend the calibration
+/// at once.
 constexpr double kFastest_radps = radians(0.005);
 constexpr double kFastest_mps = 0.0004;
 
@@ -34,9 +34,9 @@ constexpr size_t kMostLeftOut = 2;
 
 }  // namespace
 
-OnlineCalibration::OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
+OnlineCalibration::OnlineCalibration(const Rig& rig, const BevGrid& grid,
                                      const OnlineCalibrationOptions& options)
-    : options_(options), sums_(grid, channels), filter_(rig) {}
+    : options_(options), sums_(grid), filter_(rig) {}
 
 bool OnlineCalibration::restore(const ExtrinsicErrors& errors,
                                 const ExtrinsicCovariance& covariance) {

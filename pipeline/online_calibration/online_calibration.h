@@ -40,12 +40,11 @@ struct CalibrationObservation {
 /// pose in the wrong lane looks like errors of the cameras. Such apparent errors differ from place
 /// to place, so they average out; the bounds limit the rest.
 ///
-/// One thread. The constructor allocates all memory.
+/// One thread. Allocates nothing.
 class OnlineCalibration {
  public:
   /// `rig` is the network rig of the calibration.
-  OnlineCalibration(const Rig& rig, const BevGrid& grid, int channels,
-                    const OnlineCalibrationOptions& options);
+  OnlineCalibration(const Rig& rig, const BevGrid& grid, const OnlineCalibrationOptions& options);
 
   /// Starts with an estimate of an earlier drive. Returns false, and changes nothing, if it is
   /// beyond the bounds, not finite, or its covariance is not positive definite.
@@ -64,7 +63,6 @@ class OnlineCalibration {
   /// The cameras with an error that is beyond its bound by more than half its sigma, or whose
   /// picture contradicts the map while those of others agree with it.
   CameraMask faults() const { return beyond_bounds_ | contradicting(); }
-  CameraMask beyond_bounds() const { return beyond_bounds_; }
   CameraMask contradicting() const { return agreement_.contradicting(); }
 
   /// The cameras that are to be left out of matches: the first one or two that were at fault. They

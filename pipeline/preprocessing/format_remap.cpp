@@ -19,12 +19,6 @@ void remap(BlockKernel<Image>* kernel, Plain<Image>& plain, const Image& image,
 
 }  // namespace
 
-RedPixel red_of(PixelFormat format) {
-  const bool is_below = format == PixelFormat::kBayerGbrg || format == PixelFormat::kBayerBggr;
-  const bool is_right = format == PixelFormat::kBayerGrbg || format == PixelFormat::kBayerBggr;
-  return {is_below ? 1 : 0, is_right ? 1 : 0};
-}
-
 void remap_rgb(const RgbView& image, const RemapTable& table, int8_t* planes) {
   remap(rgb_kernel_for(table.taps), remap_rgb_plain, image, table, planes);
 }

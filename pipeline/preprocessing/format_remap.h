@@ -21,13 +21,6 @@ struct YuvLayout {
   YuvEncoding encoding;
 };
 
-/// Position of the first red pixel of a Bayer image: row and column are 0 or 1.
-struct RedPixel {
-  int row;
-  int col;
-};
-RedPixel red_of(PixelFormat format);
-
 // Each function writes planes[c][v][u] = value - 128 for all kNetworkPixels, black outside the
 // frame. It averages the samples of the camera format and converts the colour once per network
 // pixel. It uses the fastest kernel for this CPU (block_kernels.h); the result is the same on every

@@ -32,4 +32,13 @@ FeatureWarp::FeatureWarp(const CellFeatures& features, const Se2& correction)
     : FeatureWarp(features, correction.yaw_rad, correction.x_m / features.grid().cell_m,
                   correction.y_m / features.grid().cell_m) {}
 
+void warp_all(const CellFeatures& features, const Se2& correction, float* out,
+              std::ptrdiff_t row_stride) {
+  const FeatureWarp moved(features, correction);
+  const BevGrid& grid = features.grid();
+  for (int row = 0; row < grid.rows; ++row) {
+    warp(moved.line(row, 0, grid.cols), out + row * row_stride);
+  }
+}
+
 }  // namespace bevloc

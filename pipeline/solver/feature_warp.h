@@ -184,4 +184,8 @@ inline WarpPlane FeatureWarp::plane() const {
 /// Writes the values of a line: its cells, and for each the lanes of the features.
 void warp(const WarpLine& line, float* out);
 
+/// Writes all cells of the grid, moved by `correction`. Their rows are `row_stride` floats apart.
+void warp_all(const CellFeatures& features, const Se2& correction, float* out,
+              std::ptrdiff_t row_stride);
+
 }  // namespace bevloc

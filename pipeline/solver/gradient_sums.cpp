@@ -1,7 +1,6 @@
 #include "pipeline/solver/gradient_sums.h"
 
 #include "common/target_clones.h"
-#include "pipeline/solver/lanes.h"
 
 namespace bevloc {
 namespace {
@@ -16,32 +15,30 @@ struct Products {
 };
 
 BEVLOC_TARGET_CLONES Products sum_products(const GradientRow& row) {
+  const CellRows& rows = row.rows;
   Lanes xx = {}, xy = {}, yx = {}, yy = {}, x_residual = {}, y_residual = {};
   Lanes lever_xx = {}, lever_xy = {}, lever_yx = {}, lever_x_residual = {}, lever2_xx = {};
   const auto first_lever = static_cast<float>(-row.first_y_m);
   const auto lever_step = static_cast<float>(row.cell_m);
   for (int i = 0; i < row.cells; ++i) {
     const float lever = first_lever + static_cast<float>(i) * lever_step;
-    for (int k = 0; k < row.lanes; k += kLanes) {
-      const float* m = row.map + i * row.lanes + k;
-      const float* b = row.moved + i * row.lanes + k;
-      // Rows grow towards -x and columns towards -y.
-      const Lanes map_x = lanes(m - row.map_row_stride) - lanes(m + row.map_row_stride);
-      const Lanes map_y = lanes(m - row.lanes) - lanes(m + row.lanes);
-      const Lanes bev_x = lanes(b - row.moved_row_stride) - lanes(b + row.moved_row_stride);
-      const Lanes bev_y = lanes(b - row.lanes) - lanes(b + row.lanes);
+    for (int k = 0; k < rows.lanes; k += kLanes) {
+      const float* m = rows.map + i * rows.lanes + k;
+      const float* b = rows.moved + i * rows.lanes + k;
+      const Slope map = slope_at(m, rows.map_row_stride, rows.lanes);
+      const Slope bev = slope_at(b, rows.moved_row_stride, rows.lanes);
       const Lanes residual = lanes(m) - lanes(b);
-      const Lanes product_xx = map_x * bev_x;
-      const Lanes lever_map_x = lever * map_x;
+      const Lanes product_xx = map.x * bev.x;
+      const Lanes lever_map_x = lever * map.x;
       xx += product_xx;
-      xy += map_x * bev_y;
-      yx += map_y * bev_x;
-      yy += map_y * bev_y;
-      x_residual += map_x * residual;
-      y_residual += map_y * residual;
+      xy += map.x * bev.y;
+      yx += map.y * bev.x;
+      yy += map.y * bev.y;
+      x_residual += map.x * residual;
+      y_residual += map.y * residual;
       lever_xx += lever * product_xx;
-      lever_xy += lever_map_x * bev_y;
-      lever_yx += lever * (map_y * bev_x);
+      lever_xy += lever_map_x * bev.y;
+      lever_yx += lever * (map.y * bev.x);
       lever_x_residual += lever_map_x * residual;
       lever2_xx += lever * (lever * product_xx);
     }

@@ -1,19 +1,15 @@
 // Sums of the gradients of both sides' features by the pose.
 #pragma once
 
-#include <cstddef>
-
 #include <Eigen/Core>
+
+#include "pipeline/solver/cell_rows.h"
 
 namespace bevloc {
 
 /// Neighbouring cells of one row of both sides. Every cell must have neighbours on all four sides.
 struct GradientRow {
-  const float* map;
-  const float* moved;
-  std::ptrdiff_t map_row_stride;
-  std::ptrdiff_t moved_row_stride;
-  int lanes;
+  CellRows rows;
   int cells;
   double cell_m;
   double x_m;        ///< x of the row, relative to the centre of rotation

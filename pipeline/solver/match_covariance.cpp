@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "pipeline/solver/cell_rows.h"
 #include "pipeline/solver/feature_warp.h"
 #include "pipeline/solver/gradient_sums.h"
 #include "pipeline/solver/posterior.h"
@@ -27,19 +28,15 @@ constexpr double kMaxInformation = 1e6;
 MatchCovariance::MatchCovariance(const BevGrid& grid, int channels,
                                  const HypothesisGrid& hypotheses)
     : grid_(grid),
-      lanes_(round_up_to_lanes(channels)),
       border_(static_cast<int>(std::max(hypotheses.x_m.farthest(), hypotheses.y_m.farthest()) /
                                grid.cell_m) +
               2),
       uniform_variance_(uniform_variance(hypotheses)),
-      moved_(static_cast<size_t>(grid.cells()) * lanes_) {}
+      moved_(static_cast<size_t>(grid.cells()) * round_up_to_lanes(channels)) {}
 
 Eigen::Matrix3d MatchCovariance::estimate(const CellFeatures& bev, const CellFeatures& map,
                                           const Se2& correction) {
-  const FeatureWarp moved(bev, correction);
-  for (int row = 0; row < grid_.rows; ++row) {
-    warp(moved.line(row, 0, grid_.cols), moved_.data() + row * grid_.cols * lanes_);
-  }
+  warp_all(bev, correction, moved_.data(), grid_.cols * bev.lanes());
   const int block = std::max(1, static_cast<int>(kBlock_m / grid_.cell_m));
   Information information;
   int blocks = 0;
@@ -76,13 +73,8 @@ void MatchCovariance::add_block(const CellFeatures& map, const Se2& correction, 
   const int col_end = std::min(first_col + block, grid_.cols - border_);
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();
   for (int row = first_row; row < row_end; ++row) {
-    const std::ptrdiff_t moved_row = static_cast<std::ptrdiff_t>(grid_.cols) * lanes_;
     const GradientSums sums =
-        sum_gradients({.map = map.cell(row, first_col),
-                       .moved = moved_.data() + row * moved_row + first_col * lanes_,
-                       .map_row_stride = map.row_stride(),
-                       .moved_row_stride = moved_row,
-                       .lanes = lanes_,
+        sum_gradients({.rows = rows_at(map, moved_, row, first_col),
                        .cells = col_end - first_col,
                        .cell_m = grid_.cell_m,
                        .x_m = grid_.x_of_row(row) - correction.x_m,

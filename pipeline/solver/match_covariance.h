@@ -46,7 +46,6 @@ class MatchCovariance {
                  Information& information) const;
 
   BevGrid grid_;
-  int lanes_;
   int border_;
   Eigen::Vector3d uniform_variance_;
   LaneBuffer moved_;

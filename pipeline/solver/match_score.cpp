@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/target_clones.h"
+#include "pipeline/solver/cell_rows.h"
 #include "pipeline/solver/zncc.h"
 
 namespace bevloc {
@@ -46,11 +47,7 @@ struct Sums {
 
 /// Neighbouring cells of one row of both sides, none at the edge of the grid.
 struct CellRow {
-  const float* map;
-  const float* moved;
-  std::ptrdiff_t map_row_stride;
-  std::ptrdiff_t moved_row_stride;
-  int lanes;
+  CellRows rows;
   int cells;
   float x_m;        ///< x of the row, relative to the centre of rotation
   float first_y_m;  ///< y of the first cell, likewise
@@ -58,6 +55,7 @@ struct CellRow {
 };
 
 BEVLOC_TARGET_CLONES void add_row(const CellRow& row, Sums& sums) {
+  const CellRows& rows = row.rows;
   Lanes map_value = {};
   Lanes moved_value = {};
   LaneProducts value;
@@ -67,20 +65,17 @@ BEVLOC_TARGET_CLONES void add_row(const CellRow& row, Sums& sums) {
   for (int i = 0; i < row.cells; ++i) {
     // A rotation moves the point (x, y) along (-y, x).
     const float lever_m = static_cast<float>(i) * row.cell_m - row.first_y_m;
-    for (int k = 0; k < row.lanes; k += kLanes) {
-      const float* m = row.map + i * row.lanes + k;
-      const float* b = row.moved + i * row.lanes + k;
-      // Rows grow towards -x and columns towards -y.
-      const Lanes map_x = lanes(m - row.map_row_stride) - lanes(m + row.map_row_stride);
-      const Lanes map_y = lanes(m - row.lanes) - lanes(m + row.lanes);
-      const Lanes moved_x = lanes(b - row.moved_row_stride) - lanes(b + row.moved_row_stride);
-      const Lanes moved_y = lanes(b - row.lanes) - lanes(b + row.lanes);
+    for (int k = 0; k < rows.lanes; k += kLanes) {
+      const float* m = rows.map + i * rows.lanes + k;
+      const float* b = rows.moved + i * rows.lanes + k;
+      const Slope map = slope_at(m, rows.map_row_stride, rows.lanes);
+      const Slope moved = slope_at(b, rows.moved_row_stride, rows.lanes);
       map_value += lanes(m);
       moved_value += lanes(b);
       value.add(lanes(m), lanes(b));
-      along_x.add(map_x, moved_x);
-      along_y.add(map_y, moved_y);
-      by_yaw.add(lever_m * map_x + row.x_m * map_y, lever_m * moved_x + row.x_m * moved_y);
+      along_x.add(map.x, moved.x);
+      along_y.add(map.y, moved.y);
+      by_yaw.add(lever_m * map.x + row.x_m * map.y, lever_m * moved.x + row.x_m * moved.y);
     }
   }
   sums.map_value += sum_of(map_value);
@@ -102,17 +97,12 @@ MatchScore score_match(const CellFeatures& map, const LaneBuffer& moved, const S
                        int border) {
   const BevGrid& grid = map.grid();
   assert(border >= 1 && moved.size() == static_cast<size_t>(grid.cells()) * map.lanes());
-  const std::ptrdiff_t moved_row_stride = static_cast<std::ptrdiff_t>(grid.cols) * map.lanes();
   const int cells = grid.cols - 2 * border;
   const int rows = grid.rows - 2 * border;
   if (rows <= 0 || cells <= 0) return {};
   Sums sums;
   for (int row = border; row < border + rows; ++row) {
-    add_row({.map = map.cell(row, border),
-             .moved = moved.data() + row * moved_row_stride + border * map.lanes(),
-             .map_row_stride = map.row_stride(),
-             .moved_row_stride = moved_row_stride,
-             .lanes = map.lanes(),
+    add_row({.rows = rows_at(map, moved, row, border),
              .cells = cells,
              .x_m = static_cast<float>(grid.x_of_row(row) - correction.x_m),
              .first_y_m = static_cast<float>(grid.y_of_col(border) - correction.y_m),

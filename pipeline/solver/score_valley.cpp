@@ -24,11 +24,11 @@ ScoreValley::ScoreValley(const CellFeatures& map, const HypothesisGrid& hypothes
   // The outermost cells lack a neighbour, so they have no gradient.
   for (int row = 1; row + 1 < grid.rows; ++row) {
     const float* first = map.cell(row, 1);
-    curvature_ += sum_gradients({.map = first,
-                                 .moved = first,
-                                 .map_row_stride = map.row_stride(),
-                                 .moved_row_stride = map.row_stride(),
-                                 .lanes = map.lanes(),
+    curvature_ += sum_gradients({.rows = {.map = first,
+                                          .moved = first,
+                                          .map_row_stride = map.row_stride(),
+                                          .moved_row_stride = map.row_stride(),
+                                          .lanes = map.lanes()},
                                  .cells = grid.cols - 2,
                                  .cell_m = grid.cell_m,
                                  .x_m = grid.x_of_row(row),

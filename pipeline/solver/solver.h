@@ -41,9 +41,10 @@ class Solver {
   /// `result` is finite.
   void solve(const FeatureView& bev, const FeatureView& map, SolverResult& result);
 
-  /// The standardised features of the latest solve() with evidence.
-  const CellFeatures& bev_cells() const { return bev_cells_; }
+  /// The standardised features of the latest solve() with evidence: those of the map, and the BEV
+  /// features moved by its correction, [row, col, lanes].
   const CellFeatures& map_cells() const { return map_cells_; }
+  const LaneBuffer& moved_cells() const { return match_covariance_.moved(); }
 
  private:
   Eigen::Matrix3d covariance(const SolverResult& result);

@@ -9,7 +9,7 @@ namespace bevloc {
 struct Seen {
   bool across = false;
   bool heading = false;
-  bool unique = false;  ///< no other place in the search range looks alike across the road
+  bool unique = false;  ///< across the road, no other place in the range looks like this one
   bool place = false;   ///< perceived and mapped lines lie on each other
   /// Axes on which the best place is at the border of the search range: the truth may lie outside.
   Eigen::Array<bool, 3, 1> at_border{false, false, false};
@@ -36,13 +36,12 @@ class EvidenceMonitor {
   /// the place.
   Seen judge(MatchResult& match);
 
-  /// The same for a match that has none before it: its own score confirms the place.
+  /// Does the same for a match without earlier ones: its own score confirms the place.
   static Seen judge_alone(MatchResult& match);
 
   /// The factor by which the standard deviation of an axis grows because of its score.
   static double growth_of(double axis_score);
 
-  double mean_score() const { return mean_score_; }
   void reset() { mean_score_ = 0.0; }
 
  private:

@@ -29,6 +29,15 @@ bool is_in_clock_gap(double elapsed_s, std::span<const Fault> faults) {
   });
 }
 
+double clock_gaps_end_s(double elapsed_s, std::span<const Fault> faults) {
+  double end_s = 0.0;
+  for (const Fault& fault : faults) {
+    if (!happens(fault, FaultKind::kClockGap) || elapsed_s < fault.from_s) continue;
+    end_s = std::max(end_s, fault.from_s + fault.amounts.gap_s);
+  }
+  return end_s;
+}
+
 std::vector<Fault> in_drive_time(std::vector<Fault> faults, std::span<const Fault> clock_faults) {
   for (Fault& fault : faults) {
     fault.from_s = drive_time_s(fault.from_s, clock_faults);

@@ -8,14 +8,17 @@
 
 namespace bevloc::sim {
 
-/// The time of the drive when the appliance's clock shows `elapsed_s` since the drive's start. It
-/// is later after a suspension, which the clock does not show.
+/// The time of the drive when the appliance's clock shows `elapsed_s` since the drive's start.
+/// After a suspension it exceeds `elapsed_s`, because the clock does not count the suspension.
 double drive_time_s(double elapsed_s, std::span<const Fault> faults);
 
 /// Whether the appliance stood still at this time, while its clock went on.
 bool is_in_clock_gap(double elapsed_s, std::span<const Fault> faults);
 
-/// The faults with times of the drive in place of those that the appliance's clock shows.
+/// When the last gap ends that has begun by this time; 0 if none has.
+double clock_gaps_end_s(double elapsed_s, std::span<const Fault> faults);
+
+/// Converts the times of the faults from the appliance's clock to the time of the drive.
 std::vector<Fault> in_drive_time(std::vector<Fault> faults, std::span<const Fault> clock_faults);
 
 /// The time by which the drive may become longer than planned.

@@ -74,7 +74,7 @@ Status take_times(Words& words, double now_s, Fault& fault) {
   if (Status read = take_number(words, "for_s", 0.0, kLongest_s, for_s); !read) return read;
   if (for_s >= 0.0) {
     fault.until_s = fault.from_s + for_s;
-    return {};  // an until_s beside it is left over, so it is refused
+    return {};  // a given until_s is left over, and so refused
   }
   return take_number(words, "until_s", fault.from_s, kLongest_s, fault.until_s);
 }
@@ -86,7 +86,8 @@ Status take_cameras(Words& words, Fault& fault) {
   if (fault.kind != FaultKind::kCameraSwapped) return {};
   if (Status read = take_camera(words, "with", fault.other_camera); !read) return read;
   if (!fault.camera || !fault.other_camera || fault.camera == fault.other_camera) {
-    return fail("camera_swapped: wanted two cameras, camera=NAME with=NAME");
+    return fail(
+        "camera_swapped: found one camera or none, wanted two cameras: camera=NAME with=NAME");
   }
   return {};
 }
@@ -128,7 +129,8 @@ Result<Fault> parse_fault(std::string_view text, double now_s) {
   if (Status read = take_cameras(*words, fault); !read) return tl::unexpected(read.error());
   if (Status read = take_amounts(*words, fault); !read) return tl::unexpected(read.error());
   if (!words->left_over().empty()) {
-    return fail("{}: found {}, wanted no such key", name, words->left_over());
+    return fail("{}: found {}, wanted the keys of this kind (docs/simulation.md)", name,
+                words->left_over());
   }
   return fault;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pipeline/bev_grid.h"
+#include "pipeline/map/cell_segment.h"
 
 namespace bevloc::sim {
 namespace {
@@ -41,20 +42,11 @@ void draw_piece(const CellPoint& from, const CellPoint& to, std::span<float> cel
   const float reach = std::max(from.half_width + from.softness, to.half_width + to.softness);
   const CellSpan rows = touched(from.row, to.row, reach, kRasterGrid.rows);
   const CellSpan cols = touched(from.col, to.col, reach, kRasterGrid.cols);
-  const float d_col = to.col - from.col;
-  const float d_row = to.row - from.row;
-  const float length_squared = d_col * d_col + d_row * d_row;
-  const float per_length_squared = length_squared > 0.0F ? 1.0F / length_squared : 0.0F;
+  const CellSegment segment(from.col, from.row, to.col - from.col, to.row - from.row);
   for (int row = rows.first; row <= rows.last; ++row) {
     float* line = cells.data() + static_cast<size_t>(row) * kRasterGrid.cols;
-    const float to_row = static_cast<float>(row) - from.row;
     for (int col = cols.first; col <= cols.last; ++col) {
-      const float to_col = static_cast<float>(col) - from.col;
-      const float along =
-          std::min(std::max((to_col * d_col + to_row * d_row) * per_length_squared, 0.0F), 1.0F);
-      const float off_col = to_col - along * d_col;
-      const float off_row = to_row - along * d_row;
-      const float distance = std::sqrt(off_col * off_col + off_row * off_row);
+      const auto [along, distance] = segment.nearest(col, row);
       const float half_width = from.half_width + along * (to.half_width - from.half_width);
       const float softness = from.softness + along * (to.softness - from.softness);
       const float strength = from.strength + along * (to.strength - from.strength);

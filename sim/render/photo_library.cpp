@@ -129,7 +129,8 @@ Result<PhotoLibrary> PhotoLibrary::load(const std::filesystem::path& folder) {
   const std::filesystem::path index = folder / "photos.txt";
   std::ifstream lines(index);
   if (!lines) {
-    return fail("{}: cannot be read: wanted the index that script/photos writes", index.string());
+    return fail("{}: found no file that can be read, wanted the index that script/photos writes",
+                index.string());
   }
   PhotoLibrary library;
   std::string line;
@@ -158,7 +159,7 @@ Status PhotoLibrary::add(std::string_view use, const std::filesystem::path& file
                       std::has_single_bit(static_cast<unsigned>(side_px)) &&
                       std::abs(side_px * kFinestTexelM - side_m) < 0.01;
     if (!fits) {
-      return fail("found {} pixels for {} m, wanted 64, 128 or 256 of {} m", side_px, side_m,
+      return fail("found {} pixels for {} m, wanted 64, 128 or 256 pixels of {} m", side_px, side_m,
                   kFinestTexelM);
     }
     const auto image = read_square(file, side_px);

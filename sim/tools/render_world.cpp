@@ -42,6 +42,25 @@ struct Options {
   Conditions conditions;
 };
 
+void add_conditions(CLI::App& app, Options& options) {
+  using bevloc::number_between;
+  auto* sun = app.add_option("--sun-elevation", options.sun_elevation_deg,
+                             "Elevation of the sun in degrees");
+  sun->check(number_between(-90.0, 90.0));
+  auto* overcast = app.add_option("--overcast", options.conditions.overcast, "Cloud cover, 0 to 1");
+  overcast->check(number_between(0.0, 1.0));
+  auto* rain = app.add_option("--rain", options.conditions.rain, "Strength of the rain, 0 to 1");
+  rain->check(number_between(0.0, 1.0));
+  auto* night = app.add_flag("--night", options.night, "Set the sun 30 degrees below the horizon");
+  night->excludes(sun);
+  app.add_flag("--random-conditions", options.random_conditions,
+               "Draw light and weather from the pose seed")
+      ->excludes(sun)
+      ->excludes(overcast)
+      ->excludes(rain)
+      ->excludes(night);
+}
+
 void add_options(CLI::App& app, Options& options) {
   using bevloc::name_of;
   using bevloc::number_between;
@@ -66,17 +85,9 @@ void add_options(CLI::App& app, Options& options) {
       ->check(name_of("a folder"));
   app.add_option("--time", options.time_s, "Time of the simulated traffic in seconds")
       ->check(number_between(0.0, 1e6));
-  app.add_option("--sun-elevation", options.sun_elevation_deg, "Elevation of the sun in degrees")
-      ->check(number_between(-90.0, 90.0));
-  app.add_option("--overcast", options.conditions.overcast, "Cloud cover, 0 to 1")
-      ->check(number_between(0.0, 1.0));
-  app.add_option("--rain", options.conditions.rain, "Strength of the rain, 0 to 1")
-      ->check(number_between(0.0, 1.0));
-  app.add_flag("--night", options.night, "Set the sun 30 degrees below the horizon");
-  app.add_flag("--random-conditions", options.random_conditions,
-               "Draw light and weather from the pose seed");
   app.add_flag("--network-size", options.network_size,
                "Render the network's input images instead of the camera images");
+  add_conditions(app, options);
 }
 
 Conditions conditions_of(const Options& options) {

@@ -15,6 +15,7 @@ from evaluation.figures import frame_stages, source
 from evaluation.figures.program import bevloc_program
 from tests.bench.document import ROOT, write_table
 from training.errors import run_program
+from training.markdown import table
 
 FIGURE = ROOT / "docs/images" / frame_stages.FILE
 SWEEPS = ("cameras", "image", "bev", "hypotheses", "map")
@@ -31,9 +32,8 @@ def run_bench(*options: str | Path) -> str:
 
 
 def sweep_table(rows: list[dict[str, float]], columns: list[str]) -> str:
-    lines = [columns, ["---:"] * len(columns)]
-    lines += [[f"{row[column]:.4g}" for column in columns] for row in rows]
-    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
+    cells = [[f"{row[column]:.4g}" for column in columns] for row in rows]
+    return table(columns, cells, text_columns=0)
 
 
 def columns_of(rows: list[dict[str, float]]) -> list[str]:

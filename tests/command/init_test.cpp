@@ -9,6 +9,7 @@
 #include "common/files.h"
 #include "evaluation/drive/drive_config.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/text.h"
 
 namespace bevloc::command {
 namespace {
@@ -32,10 +33,7 @@ class InitTest : public testing::Test {
     Dialog dialog(in, said_, typed != nullptr);
     return command.run(offers_, dialog);
   }
-  std::string written() const {
-    std::ifstream file(file_);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string written() const { return test::read_text(file_); }
   std::vector<std::string> real_cameras() const {
     return {"--cameras",
             "v4l2",

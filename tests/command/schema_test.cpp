@@ -1,5 +1,4 @@
 // Tests the parts of the schema that test_schema.py does not see: passes, texts and the page.
-#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -10,6 +9,7 @@
 #include "command/schema/page_texts.h"
 #include "command/schema/schema_command.h"
 #include "evaluation/drive/drive_config.h"
+#include "tests/support/text.h"
 
 namespace bevloc::command {
 namespace {
@@ -108,12 +108,10 @@ TEST(ConfigurationSchema, HasEveryKeyOfThePage) {
   std::set<std::string> keys;
   collect(configuration_schema(&reader), keys);
   EXPECT_GT(keys.size(), 80U);
-  std::ifstream file(std::string(BEVLOC_SOURCE_DIR) + "/docs/configuration.md");
-  std::ostringstream page;
-  page << file.rdbuf();
-  EXPECT_EQ(page.str(), configuration_page());
+  const std::string page = test::read_text(BEVLOC_SOURCE_DIR "/docs/configuration.md");
+  EXPECT_EQ(page, configuration_page());
   std::set<std::string> unknown;
-  std::istringstream lines(page.str());
+  std::istringstream lines(page);
   for (std::string line; std::getline(lines, line);) {
     const bool row = line.starts_with("| `");
     const bool section = line.starts_with("## `");

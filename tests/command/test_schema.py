@@ -136,7 +136,7 @@ def wrong_versions(document: Any) -> Iterator[tuple[str, Any]]:
 # What a schema cannot say: values that contradict each other, or that only a program understands.
 BEYOND = re.compile(
     r"less than tolerance_ms|the id of another camera|more than a quarter of the range"
-    r"|less than 0x40 apart"
+    r"|less than 0x40 apart|beside [0-9.]+ in gpio\.trigger\.rate_hz|a frame period or more"
     r"|not more than degraded_after_ms|half a period|a second time|an empty list|no known format"
     r"|a CPU listed twice|less than from_s|the same camera|the shortest time first"
     r"|wanted a whole number|a persistent camera id|quaternion|corners|cameras\.\w+\.vehicle_from"

@@ -71,7 +71,9 @@ TEST_F(UdevRulesTest, NamesChipsThatCannotBeToldApart) {
   const std::vector<drivers::LineAddress> lines{{"pinctrl-bcm2711", "TRIGGER"}};
   const auto rules = udev_rules(chips_, lines, sysfs_);
   ASSERT_TRUE(rules) << rules.error().message;
-  EXPECT_THAT(*rules, HasSubstr("# Also gives the group gpiochip3: nothing tells them from"));
+  EXPECT_THAT(
+      *rules,
+      HasSubstr("# The next rule also opens gpiochip3 to the group: no attribute tells them from"));
 }
 
 TEST_F(UdevRulesTest, SaysThatThereIsNoLine) {

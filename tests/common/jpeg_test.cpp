@@ -1,7 +1,7 @@
-// JPEG in memory, and the conversion of YUV images to RGB.
+// JPEG in memory.
 #include "common/jpeg.h"
 
-#include <array>
+#include <algorithm>
 
 #include <gtest/gtest.h>
 
@@ -55,34 +55,26 @@ TEST(JpegTest, BayerIsRefused) {
   EXPECT_FALSE(encoder.encode(image, 90));
 }
 
-/// The same red in each YUV format; BT.601 in limited range has it at (81, 90, 240).
-TEST(JpegTest, EveryYuvFormatBecomesTheSameRgb) {
-  const std::array<uint8_t, 8> yuyv{81, 90, 81, 240, 81, 90, 81, 240};
-  const std::array<uint8_t, 8> uyvy{90, 81, 240, 81, 90, 81, 240, 81};
-  const std::array<uint8_t, 4> luma{81, 81, 81, 81};
-  const std::array<uint8_t, 2> chroma{90, 240};
-  ImageView image;
-  image.width = 2;
-  image.height = 2;
-  const auto expect_red = [&] {
-    RgbImage rgb(2, 2);
-    convert_to_rgb(image, rgb);
-    for (int i = 0; i < 4; ++i) {
-      EXPECT_NEAR(rgb.pixels[3 * i], 254, 2);
-      EXPECT_NEAR(rgb.pixels[3 * i + 1], 0, 2);
-      EXPECT_NEAR(rgb.pixels[3 * i + 2], 0, 2);
-    }
-  };
-  image.format = PixelFormat::kYuyv;
-  image.planes[0] = {yuyv.data(), 4};
-  expect_red();
-  image.format = PixelFormat::kUyvy;
-  image.planes[0] = {uyvy.data(), 4};
-  expect_red();
-  image.format = PixelFormat::kNv12;
-  image.planes[0] = {luma.data(), 2};
-  image.planes[1] = {chroma.data(), 2};
-  expect_red();
+TEST(JpegTest, ADecoderReadsOneFileAfterTheOtherAndReduces) {
+  JpegEncoder encoder;
+  const std::string large(encoder.encode(slope(48, 31).view(), 95).value());
+  const std::string flat(encoder.encode(RgbImage(16, 8).view(), 95).value());
+  JpegDecoder decoder;
+  ASSERT_TRUE(decoder.open(large, "large"));
+  EXPECT_EQ(decoder.width_px(), 48);
+  EXPECT_EQ(decoder.height_px(), 31);
+  RgbImage half(24, 16);
+  ASSERT_TRUE(decoder.decode(half));
+  const uint8_t* const pixel = half.row(5) + 3 * 10;
+  EXPECT_NEAR(pixel[0], 4 * 20.5, 8);
+  EXPECT_NEAR(pixel[1], 4 * 10.5, 8);
+  EXPECT_NEAR(pixel[2], 90, 8);
+  ASSERT_TRUE(decoder.open(flat, "flat"));
+  EXPECT_EQ(decoder.width_px(), 16);
+  RgbImage whole(16, 8);
+  std::ranges::fill(whole.pixels, uint8_t{77});
+  ASSERT_TRUE(decoder.decode(whole));
+  EXPECT_NEAR(whole.row(7)[3 * 15], 0, 2);
 }
 
 }  // namespace

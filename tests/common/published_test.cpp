@@ -26,6 +26,25 @@ TEST(PublishedTest, HoldsTheLatestValue) {
   EXPECT_EQ(published.load().more[32], 7U);
 }
 
+/// A value whose writer can stop in the middle of a store.
+class HalfStored : public Published<Counters> {
+ public:
+  using Published<Counters>::begin_store;
+  using Published<Counters>::end_store;
+};
+
+TEST(PublishedTest, TryLoadDoesNotWaitForTheWriter) {
+  HalfStored published;
+  published.store(all(7));
+  published.begin_store();
+  EXPECT_FALSE(published.try_load());
+  published.end_store();
+  const auto loaded = published.try_load();
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->a, 7U);
+  EXPECT_EQ(loaded->more[32], 7U);
+}
+
 TEST(PublishedTest, AReaderNeverSeesHalfAValue) {
   constexpr uint32_t kValues = 20'000;
   Published<Counters> published;

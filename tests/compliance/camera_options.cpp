@@ -66,8 +66,8 @@ void CameraOptions::apply() {
       if (format.name == name) common.formats.push_back(format.format);
     }
   }
-  common.exposure = from_seconds(1e-3 * exposure_ms_);
-  if (readout_ms_ > 0.0) common.readout = from_seconds(1e-3 * readout_ms_);
+  common.exposure = from_milliseconds(exposure_ms_);
+  if (readout_ms_ > 0.0) common.readout = from_milliseconds(readout_ms_);
   for (const std::string& control : controls_) {
     common.controls.push_back(*control_from(control));
   }

@@ -6,10 +6,12 @@
 #include <fstream>
 
 #include "drivers/gpio/libgpiod_gpio.h"
-#include "drivers/mock/mock_gpio.h"
+#include "tests/support/mock_gpio.h"
 
 namespace bevloc::drivers {
 namespace {
+
+using test::MockGpio;
 
 GpioBench mock_bench() {
   static MonotonicClock clock;

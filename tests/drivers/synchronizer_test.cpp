@@ -176,6 +176,41 @@ TEST_F(Synchronizer, ADeadCameraIsNotWaitedForUntilItRecovers) {
             static_cast<uint64_t>(FramesetSynchronizer::kPatience));
 }
 
+/// The wait is longer than the time in which the queues of the other cameras fill.
+class PatientSynchronizer : public testing::TestWithParam<int> {};
+
+TEST_P(PatientSynchronizer, OneDeadCameraDoesNotStopTheFramesets) {
+  const Duration wait = milliseconds(GetParam());
+  FramesetSynchronizer synchronizer({.tolerance = milliseconds(2), .wait = wait, .min_cameras = 3});
+  constexpr Duration kPeriod = milliseconds(100);
+  constexpr Duration kDelay = milliseconds(20);
+  constexpr int kPeriods = 50;
+  Time latest;
+  int sets = 0;
+  for (int k = 0; k < kPeriods; ++k) {
+    const Time exposure = at_ms(1000) + k * kPeriod;
+    const Time now = exposure + kDelay;
+    for (int camera = 1; camera < kCameraCount; ++camera) {
+      EXPECT_EQ(synchronizer.add(frame_of(camera, exposure), now), FrameFate::kAccepted);
+    }
+    while (const auto set = synchronizer.poll(now)) {
+      EXPECT_EQ(set->present, CameraMask().set().reset(0));
+      EXPECT_EQ(set->time, at_ms(1000) + sets * kPeriod) << "no frame may be dropped";
+      latest = set->time;
+      ++sets;
+    }
+    const bool patience_is_over =
+        k >= FramesetSynchronizer::kPatience + FramesetSynchronizer::kQueueCapacity;
+    if (patience_is_over) {
+      EXPECT_EQ(latest, exposure) << "the dead camera adds no latency";
+    }
+  }
+  EXPECT_EQ(sets, kPeriods);
+  EXPECT_EQ(synchronizer.counters(1).overflow, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(WaitMs, PatientSynchronizer, testing::Values(440, 500, 1000));
+
 TEST_F(Synchronizer, ACameraWithAWrongClockIsNotWaitedFor) {
   for (int64_t time_ms = 1000; time_ms < 2000; time_ms += 100) {
     EXPECT_EQ(add(kBack, time_ms + 3'600'000, time_ms + 20), FrameFate::kFuture);

@@ -4,12 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/mock/mock_gpio.h"
+#include "tests/support/mock_gpio.h"
 
 namespace bevloc::drivers {
 namespace {
 
 using std::chrono::milliseconds;
+using test::MockGpio;
 
 constexpr Duration kPulsePeriod = milliseconds(100);
 constexpr Duration kWidth = milliseconds(2);

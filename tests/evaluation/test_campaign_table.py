@@ -39,6 +39,13 @@ class TableTest(unittest.TestCase):
     def test_says_in_how_many_runs_something_was_detected(self) -> None:
         self.assertIn("2.00 in 1 of 2", table.markdown([row(1, 0.0, None), row(2, 0.0, 2.0)]))
 
+    def test_a_run_that_was_never_valid_has_no_time_of_detection(self) -> None:
+        never = row(1, 0.0, None)
+        never["detected_by"] = "never valid"
+        self.assertIn("| never valid | - |", table.markdown([never]))
+        line = table.markdown([never, row(2, 0.0, 2.0)])
+        self.assertIn("| never valid, GnssContradicts | 2.00 in 1 of 2 |", line)
+
     def test_replaces_only_what_is_between_the_marks(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             page = Path(folder) / "page.md"

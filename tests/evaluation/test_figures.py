@@ -108,8 +108,11 @@ def stanford_data() -> list[stanford.Diagram]:
         for name in ("longitudinal", "lateral", "yaw")
     ]
     return [
-        {"name": "no fault", "valid_poses": 8001, "axes": axes},
-        {"name": "with faults", "valid_poses": 0, "axes": axes},
+        {"name": "no fault", "drives": 3, "drives_with_pose": 2, "valid_poses": 8001, "axes": axes},
+        {
+            "name": "with faults", "drives": 1, "drives_with_pose": 0, "valid_poses": 0,
+            "axes": axes,
+        },
     ]
 
 
@@ -158,6 +161,10 @@ class FiguresTest(unittest.TestCase):
         height = stanford.TOP + stanford.PANEL + stanford.BOTTOM
         self.check((width, height), [style.INK, style.ORANGE])
 
+    def test_stanford_says_how_many_drives_had_a_pose(self) -> None:
+        said = stanford.heading(stanford_data()[0])
+        self.assertEqual(said, "no fault: 8001 valid poses, 2 of 3 drives had a pose")
+
 
 class SourceTest(unittest.TestCase):
     def refusal(self, read: Callable[[Any, Path], object], document: object) -> str:
@@ -184,6 +191,7 @@ class SourceTest(unittest.TestCase):
             (bench_data(), "no diagrams"),
             ([{}], "no diagrams"),
             ([1], "no diagrams"),
+            ([{"name": "no fault", "valid_poses": 1, "axes": []}], "no diagrams"),
             (stanford_data()[1:], "no valid pose"),
         ):
             self.assertRegex(self.refusal(stanford.data_of, document), f"^x.json: found {found}")

@@ -1,8 +1,8 @@
 // No command judges a town that networks train on.
 #include "evaluation/town_seeds.h"
 
-#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -13,6 +13,7 @@
 #include "evaluation/campaign/integrity_command.h"
 #include "evaluation/campaign/tune_matches_command.h"
 #include "evaluation/solver/solver_command.h"
+#include "tests/evaluation/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
@@ -38,25 +39,19 @@ TEST(TownSeeds, EndBeforeThoseOfTraining) {
 }
 
 template <typename Command>
-std::string refusal_of(std::vector<std::string> words) {
-  CLI::App app;
-  Command command;
-  command.declare(app);
+std::string refusal_from_last_town(std::vector<std::string> words) {
   words.insert(words.end(), {"--first-seed", std::to_string(kLastTown)});
-  std::ranges::reverse(words);  // as CLI11 expects
-  app.parse(words);
-  const auto status = command.run();
-  return status ? "nothing" : status.error().message;
+  return test::refusal_of<Command>(std::move(words));
 }
 
 TEST(TownSeeds, AreCheckedForAllDrives) {
   const test::TemporaryFolder folder;
   const std::string csv = folder / "matches.csv";
   for (const std::string& refusal :
-       {refusal_of<CampaignCommand>({"campaign", "--seeds", "2"}),
-        refusal_of<IntegrityCommand>({"integrity", "--drives", "2"}),
-        refusal_of<CalibEvaluation>({"calib", "--drives", "2"}),
-        refusal_of<TuneMatchesCommand>({"matches", "--drives", "2", "--csv", csv})}) {
+       {refusal_from_last_town<CampaignCommand>({"campaign", "--seeds", "2"}),
+        refusal_from_last_town<IntegrityCommand>({"integrity", "--drives", "2"}),
+        refusal_from_last_town<CalibEvaluation>({"calib", "--drives", "2"}),
+        refusal_from_last_town<TuneMatchesCommand>({"matches", "--drives", "2", "--csv", csv})}) {
     EXPECT_THAT(refusal, HasSubstr("--first-seed: found the town 4294967296"));
   }
 }

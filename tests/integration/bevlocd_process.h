@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/support/temporary_folder.h"
+#include "tests/support/text.h"
 
 namespace bevloc::test {
 
@@ -18,7 +19,6 @@ struct ProcessResult {
 /// timeout(1) with its options.
 ProcessResult run_bevlocd(const std::string& arguments, const std::string& launcher = "");
 
-std::string read_text(const std::filesystem::path& file);
 void write_file(const std::filesystem::path& file, const std::string& text);
 
 /// Returns the shipped demo configuration with absolute paths, and with `piece` replaced.

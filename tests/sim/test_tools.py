@@ -42,6 +42,11 @@ class ToolsTest(unittest.TestCase):
             *(("--overcast", "5"), ("--rain", "-1"), ("--sun-elevation", "91"), ("--seed", "-1")),
         ):
             self.expect_refused("render_world", *words)
+        for words in (
+            *(("--overcast", "1"), ("--rain", "1"), ("--sun-elevation", "5"), ("--night",)),
+        ):
+            self.expect_refused("render_world", "--random-conditions", *words, said="excludes")
+        self.expect_refused("render_world", "--night", "--sun-elevation", "5", said="excludes")
 
     def test_scenes_are_measured_without_a_folder(self) -> None:
         self.expect_refused("measure_scenes", "--scenes", "-1")

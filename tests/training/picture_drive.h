@@ -14,17 +14,11 @@
 #include "common/files.h"
 #include "common/image_file.h"
 #include "pipeline/calibration/reference_trajectory.h"
-#include "pipeline/calibration/rig_yaml.h"
+#include "tests/support/demo_rig.h"
 #include "tests/support/temporary_folder.h"
 #include "training/drives/drive_set.h"
 
 namespace bevloc::test {
-
-inline Rig demo_rig() {
-  const auto rig = read_rig(std::string(BEVLOC_SOURCE_DIR) + "/config/rig_demo.yaml");
-  EXPECT_TRUE(rig) << rig.error().message;
-  return *rig;
-}
 
 /// A drive to the east at 10 m/s with a picture of each camera every 0.1 s, of which only the
 /// indexes are real unless `with_pictures`.

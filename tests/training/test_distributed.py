@@ -92,7 +92,7 @@ class TwoProcesses(unittest.TestCase):
         names = {path.name for path in self.run_folder.iterdir()}
         self.assertEqual(names, {"checkpoint.pt", "rank0.pt", "rank1.pt"})
         config = TrainingConfig(run=self.run_folder, samples=SAMPLES, resume=True)
-        with self.assertRaisesRegex(CheckpointError, "2 processes, found 1"):
+        with self.assertRaisesRegex(CheckpointError, "2 processes, wanted one with 1"):
             Trainer(config, lambda _, first, share: SyntheticStream(first, share), [])
 
 

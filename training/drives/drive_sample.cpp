@@ -57,8 +57,8 @@ Status DriveSampleMaker::make(const SamplePlace& place, const SampleChoice& choi
     if (exposures[camera] - reference_time > kWidestSpread) {
       return fail("{}: found {} exposed {:.0f} ms after the first camera, wanted at most {:.0f} ms",
                   name_of(drive, place), kCameraNames[camera],
-                  1e3 * to_seconds(exposures[camera] - reference_time),
-                  1e3 * to_seconds(kWidestSpread));
+                  to_milliseconds(exposures[camera] - reference_time),
+                  to_milliseconds(kWidestSpread));
     }
     reference_from_exposure[camera] = map_from_vehicle->inverse() * *at_exposure;
   }

@@ -66,12 +66,12 @@ void add_options(CLI::App& app, Options& options) {
       ->check(bevloc::whole_number());
   app.add_option("--first-sample", options.first_sample, "Number of the first sample to write")
       ->check(bevloc::whole_number());
-  app.add_option("--stride", options.stride, "Write every so many samples")
+  app.add_option("--stride", options.stride, "Write the first of every N samples")
       ->check(CLI::Range(1, 1024));
   app.add_option("--drop-camera-probability", options.drop_camera_probability,
                  "Probability that a sample lacks one or two cameras")
       ->check(bevloc::number_between(0.0, 1.0));
-  app.add_flag("--skip-bad", options.skip, "The next good place replaces that of a bad sample");
+  app.add_flag("--skip-bad", options.skip, "Replace a bad sample by the next good one");
   app.add_flag("--count", options.count,
                "Print the number of samples of each part, and the ranges of the network cameras' "
                "focal lengths and heights, and end");

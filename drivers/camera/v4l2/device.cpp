@@ -6,7 +6,6 @@
 #include <fcntl.h>
 #include <linux/videodev2.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
 
 namespace bevloc::drivers::v4l2 {
 
@@ -24,9 +23,9 @@ std::string open_error(const std::filesystem::path& node, int error) {
 
 Result<std::shared_ptr<Device>> Device::open(const std::filesystem::path& node) {
   // The device is opened non-blocking, because next_frame() waits in ppoll() with a timeout.
-  const int fd = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) return fail("{}", open_error(node, errno));
-  std::shared_ptr<Device> device(new Device(fd));
+  FileDescriptor fd(::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
+  if (fd.get() < 0) return fail("{}", open_error(node, errno));
+  std::shared_ptr<Device> device(new Device(std::move(fd)));
   v4l2_capability capability{};
   if (const int error = device->call(VIDIOC_QUERYCAP, &capability)) {
     return fail("{}: is not a V4L2 device: {}", node.string(), std::strerror(error));
@@ -41,12 +40,8 @@ Result<std::shared_ptr<Device>> Device::open(const std::filesystem::path& node) 
   return device;
 }
 
-Device::~Device() {
-  close(fd_);
-}
-
 int Device::call(unsigned long request, void* argument) const {
-  while (ioctl(fd_, request, argument) != 0) {
+  while (ioctl(fd_.get(), request, argument) != 0) {
     if (errno != EINTR) return errno;
   }
   return 0;

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
+#include "common/file_descriptor.h"
 #include "common/result.h"
 
 namespace bevloc::drivers::v4l2 {
@@ -17,11 +19,8 @@ class Device {
  public:
   /// Fails for a device that cannot capture single-plane video by streaming.
   static Result<std::shared_ptr<Device>> open(const std::filesystem::path& node);
-  ~Device();
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
 
-  int fd() const { return fd_; }
+  int fd() const { return fd_.get(); }
   /// Card and node, such as "HD Camera (/dev/video0)", for messages.
   const std::string& name() const { return name_; }
 
@@ -29,9 +28,9 @@ class Device {
   int call(unsigned long request, void* argument) const;
 
  private:
-  explicit Device(int fd) : fd_(fd) {}
+  explicit Device(FileDescriptor fd) : fd_(std::move(fd)) {}
 
-  const int fd_;
+  const FileDescriptor fd_;
   std::string name_;
 };
 

@@ -6,7 +6,6 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include "drivers/camera/dmabuf.h"
 
@@ -40,7 +39,6 @@ Stream::~Stream() {
   stop();
   for (const Mapping& mapping : mappings_) {
     if (mapping.data != nullptr) munmap(mapping.data, mapping.length);
-    if (mapping.dmabuf >= 0) close(mapping.dmabuf);
   }
 }
 
@@ -79,7 +77,7 @@ Status Stream::map_buffer(uint32_t slot, MemoryAccess access) {
       return fail("{}: buffers cannot be exported as dmabuf ({}); set `memory: mmap`",
                   device_->name(), std::strerror(error));
     }
-    mapping.dmabuf = request.fd;
+    mapping.dmabuf.reset(request.fd);
     fd = request.fd;
     offset = 0;
   }
@@ -135,14 +133,15 @@ ImageView Stream::view(const v4l2_buffer& buffer) const {
 }
 
 FrameBuffer Stream::lend(const v4l2_buffer& buffer) {
-  if (const int dmabuf = mappings_[buffer.index].dmabuf; dmabuf >= 0) begin_dmabuf_read(dmabuf);
+  const int dmabuf = mappings_[buffer.index].dmabuf.get();
+  if (dmabuf >= 0) begin_dmabuf_read(dmabuf);
   lent_.fetch_add(1, std::memory_order_relaxed);
   return {shared_from_this(), static_cast<int>(buffer.index), view(buffer)};
 }
 
 void Stream::give_back(int slot) noexcept {
   const auto index = static_cast<uint32_t>(slot);
-  if (const int dmabuf = mappings_[index].dmabuf; dmabuf >= 0) end_dmabuf_read(dmabuf);
+  if (const int dmabuf = mappings_[index].dmabuf.get(); dmabuf >= 0) end_dmabuf_read(dmabuf);
   requeue(index);
   lent_.fetch_sub(1, std::memory_order_relaxed);
 }

@@ -8,6 +8,7 @@
 
 #include <linux/videodev2.h>
 
+#include "common/file_descriptor.h"
 #include "drivers/camera/frame_buffer.h"
 #include "drivers/camera/v4l2/device.h"
 #include "drivers/camera/v4l2/format_negotiation.h"
@@ -53,7 +54,7 @@ class Stream final : public FrameLender, public std::enable_shared_from_this<Str
   struct Mapping {
     uint8_t* data = nullptr;
     size_t length = 0;
-    int dmabuf = -1;
+    FileDescriptor dmabuf;  ///< none if the device itself is mapped
   };
 
   Stream(std::shared_ptr<Device> device, const StreamFormat& format)

@@ -7,23 +7,29 @@ namespace bevloc::evaluation {
 
 using sim::FaultKind;
 
+namespace {
+
+// In each mode only the reasons count that name its second fault.
+constexpr WhyMask kOdometryNamed = Why::kOdometryContradicts | Why::kOdometryImplausible;
+
+}  // namespace
+
 std::vector<Mode> modes_without_gnss() {
   const sim::Fault outage = fault(FaultKind::kGnssOutage);
   const MatchFault creeping{.kind = MatchFaultKind::kCreeping, .offset = {0.0, 0.05, 0.0}};
-  const WhyMask contradicts = Why::kOdometryContradicts | Why::kOdometryImplausible;
   ModeList modes(Mode{.on_pictures = false});
   modes.add("creeping-without-gnss", "match creeps at 0.05 m/s while GNSS is missing", kToTheEnd,
-            {outage}, {creeping}, Why::kGnssMissing);
+            {outage}, {creeping}, Why::kMatchContradicts | Why::kMatchUncertain);
   modes.add("odometry-stuck-without-gnss", "odometry repeats its values while GNSS is missing",
-            kTwenty, {outage, fault(FaultKind::kOdometryStuck)}, {}, contradicts);
+            kTwenty, {outage, fault(FaultKind::kOdometryStuck)}, {}, kOdometryNamed);
   modes.add("odometry-spin-without-gnss", "speed x 1.3 while GNSS is missing", kTwenty,
-            {outage, fault(FaultKind::kOdometrySlip, {.factor = 1.3})}, {}, contradicts);
+            {outage, fault(FaultKind::kOdometrySlip, {.factor = 1.3})}, {}, kOdometryNamed);
   modes.add("odometry-scale-without-gnss", "wheel speed 2 % too high while GNSS is missing",
             kToTheEnd, {outage, fault(FaultKind::kOdometryScaled, {.factor = 1.02})}, {},
-            contradicts | Why::kGnssMissing);
+            kOdometryNamed);
   modes.add("yaw-bias-3-without-gnss", "yaw rate 3 degrees/s too high while GNSS is missing",
             kTwenty, {outage, fault(FaultKind::kYawRateBias, {.bias_degps = 3.0})}, {},
-            contradicts);
+            kOdometryNamed);
   return std::move(modes).all();
 }
 
@@ -31,10 +37,11 @@ std::vector<Mode> modes_without_match() {
   const MatchFault dark{.kind = MatchFaultKind::kSawNothing};
   ModeList modes(Mode{.on_pictures = false});
   modes.add("dark-gnss-drag", "the match says nothing, and GNSS is dragged away at 0.2 m/s",
-            kToTheEnd, {fault(FaultKind::kGnssRamp, {.across_mps = 0.2})}, {dark}, Why::kPoseStale);
+            kToTheEnd, {fault(FaultKind::kGnssRamp, {.across_mps = 0.2})}, {dark},
+            Why::kGnssContradicts);
   modes.add("dark-odometry-scale", "the match says nothing, and the wheel speed is 2 % too high",
             kToTheEnd, {fault(FaultKind::kOdometryScaled, {.factor = 1.02})}, {dark},
-            Why::kPoseStale);
+            kOdometryNamed);
   return std::move(modes).all();
 }
 

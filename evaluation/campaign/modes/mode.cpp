@@ -22,6 +22,13 @@ FaultTime Mode::time_in(double duration_s) const {
   return {from_s, length.seconds > 0.0 ? from_s + length.seconds : kNever};
 }
 
+bool Mode::fails() const {
+  const auto is_failure = [](const sim::Fault& fault) {
+    return fault.kind != sim::FaultKind::kGnssNoHeading;
+  };
+  return std::ranges::any_of(faults, is_failure) || !match_faults.empty() || suspended_s > 0.0;
+}
+
 Result<std::vector<const Mode*>> modes_named(const std::vector<std::string>& names, Level level) {
   std::vector<const Mode*> found;
   if (names.empty()) {
@@ -36,7 +43,7 @@ Result<std::vector<const Mode*>> modes_named(const std::vector<std::string>& nam
       return fail("mode {}: found no such mode, wanted one of `bevloc campaign --list`", name);
     }
     if (!mode->is_on(level)) {
-      return fail("mode {}: found it chosen for a level that cannot show it, wanted {}", name,
+      return fail("mode {}: found a level that cannot run this mode, wanted {}", name,
                   level == Level::kStage ? "--level pictures" : "--level stage");
     }
     found.push_back(&*mode);

@@ -41,6 +41,9 @@ struct Mode {
   bool on_stage = true;
   bool on_pictures = true;
 
+  /// Whether something fails. A vehicle that crawls, stands or reverses is no failure, nor is GNSS
+  /// without a heading (G5 in docs/safety.md).
+  bool fails() const;
   bool is_on(Level level) const { return level == Level::kStage ? on_stage : on_pictures; }
   FaultTime time_in(double duration_s) const;
 };

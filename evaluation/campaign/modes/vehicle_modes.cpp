@@ -31,7 +31,8 @@ std::vector<Mode> gnss_modes() {
   modes.add("gnss-no-heading-start", "GNSS without heading from the start", kAlways,
             fault(FaultKind::kGnssNoHeading), {});
   modes.add("gnss-start-6m", "GNSS 6 m off from the start", kAlways,
-            fault(FaultKind::kGnssJump, {.across_m = 6.0}), contradicts | Why::kMatchContradicts);
+            fault(FaultKind::kGnssJump, {.across_m = 6.0}),
+            contradicts | Why::kMatchContradicts | Why::kMatchUncertain);
   modes.add("gnss-outage-start", "GNSS missing for the first 20 s", {20.0, true},
             fault(FaultKind::kGnssOutage), {});
   modes.add("gnss-stuck", "GNSS repeats its last fix", kTwenty, fault(FaultKind::kGnssStuck),
@@ -43,7 +44,7 @@ std::vector<Mode> gnss_modes() {
   modes.add("gnss-heading-10", "GNSS heading 10 degrees off", kTwenty,
             fault(FaultKind::kGnssJump, {.heading_deg = 10.0}), contradicts);
   modes.add("gnss-heading-10-start", "GNSS heading 10 degrees off from the start", kAlways,
-            fault(FaultKind::kGnssJump, {.heading_deg = 10.0}), contradicts);
+            fault(FaultKind::kGnssJump, {.heading_deg = 10.0}), contradicts | Why::kMatchUncertain);
   return std::move(modes).all();
 }
 
@@ -101,13 +102,15 @@ std::vector<Mode> bus_modes() {
 }
 
 std::vector<Mode> clock_modes() {
+  // The appliance's clock does not show the suspension, so it ends as soon as it has begun.
+  constexpr FaultLength kAtOnce{0.01};
   ModeList modes(Mode{.on_stage = false});
   modes.add("wall-clock-step", "the system clock is set 0.9 s ahead", kToTheEnd,
             fault(FaultKind::kWallClockStep, {.step_s = 0.9}), {});
   modes.add("process-stopped", "the appliance stands still for 3 s", {3.0},
             fault(FaultKind::kClockGap, {.gap_s = 3.0}), Why::kClockGap);
   modes.add("machine-suspended", "the machine is suspended for 3 s, which its clock does not show",
-            {1.0}, fault(FaultKind::kClockSuspend, {.gap_s = 3.0}), Why::kClockGap);
+            kAtOnce, fault(FaultKind::kClockSuspend, {.gap_s = 3.0}), Why::kClockGap);
   return std::move(modes).all();
 }
 

@@ -17,7 +17,7 @@ function drawAll() {
   drawTrail();
 }
 
-/// Greys pictures and matches that nothing newer has replaced.
+/// Shows pictures and matches in grey when they are older than STALE_MS.
 function noteAge() {
   const isOld = (at_ms) => performance.now() - at_ms > STALE_MS;
   for (const camera of Object.values(shown.cameras)) {
@@ -41,11 +41,11 @@ export function noteSilence() {
   setChildren(byId("why"), []);
 }
 
-/// The browser does not tell with which status the events were refused.
+/// The browser does not tell why the request for events was refused, so this asks with HEAD.
 function noteRefusal() {
   fetch("/events", {method: "HEAD"}).then((answer) => {
     const full = answer.status === 503;
-    refusal = full ? "As many viewers as bevlocd allows look already: close one." : NO_ANSWER;
+    refusal = full ? "bevlocd has no room for another viewer. Close one." : NO_ANSWER;
   }, () => { refusal = NO_ANSWER; });
 }
 

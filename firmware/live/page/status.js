@@ -3,8 +3,8 @@ import {byId, element, setChildren, setText, setTitle} from "./drawing.js";
 import {shown} from "./state.js";
 import {drawTrail, noteTrail} from "./trail.js";
 
-const RATES_S = 3;  // over which rates are averaged
-const earlier = [];  // statuses of these seconds
+const RATES_S = 3;  // rates are averaged over this many seconds
+const earlier = [];  // the statuses of the last RATES_S
 
 function showState(status) {
   const badge = byId("state");
@@ -14,7 +14,7 @@ function showState(status) {
   setTitle(status.state || status.phase);
   const summary = status.phase !== "running" ? status.health :
     status.valid ? "The pose may be used." : "The pose must not be used.";
-  // Otherwise the badge and the reasons below say what /healthz says.
+  // If the answer of /healthz begins with the state, the badge and the reasons already show it.
   const more = status.phase === "running" && !status.healthy && !status.health.startsWith(status.state);
   setText(byId("summary"), summary + (more ? " Not healthy: " + status.health : ""));
   setChildren(byId("why"), (status.why || []).map((reason) => {
@@ -60,7 +60,7 @@ function showPairs(status) {
     ["spread", status.framesets.spread_ms.toFixed(2) + " ms"],
     ["accepted", status.tracker.corrections.accepted],
     ["refused by E2E", status.vehicle.e2e_refused],
-    ["vehicle lost", status.vehicle.frames_lost],
+    ["vehicle frames lost", status.vehicle.frames_lost],
     ["CAN sent", sent.toFixed(0) + " per s"],
     ["CAN received", received.toFixed(0) + " per s"],
     ["CAN dropped", status.can.send_dropped + status.can.receive_dropped],
@@ -76,7 +76,7 @@ function showPairs(status) {
   }));
 }
 
-/// What a daemon without an appliance does not know.
+/// Clears what only a daemon with a running appliance knows.
 function clearFacts() {
   earlier.length = 0;
   for (const id of ["rate", "latency", "speed", "can", "place"]) setText(byId(id), "–");

@@ -72,15 +72,15 @@ std::string key_before(const std::vector<std::pair<std::string, ForeignNode>>& e
   const auto& [key, camera] = entries[index];
   const std::optional<int> number = number_in(key);
   if (number.value_or(static_cast<int>(index)) == 0) {
-    camera.at("T_cn_cnm1").reject("a first camera", "a camera before it");
+    camera.at("T_cn_cnm1").reject("the first camera of the chain", "a camera before it");
   }
   if (!number) return entries[index - 1].first;
   return fmt::format("cam{}", *number - 1);
 }
 
 /// Gives each camera of a chain a name that no other one has: the word of its topic, or its key if
-/// it has no topic or if an earlier camera has that name. If the topic of another camera is called
-/// as this key, the other camera gets its own key, too.
+/// it has no topic or if an earlier camera has that name. If this key is already the
+/// name of another camera, that camera gets its own key, too.
 class ChainNames {
  public:
   explicit ChainNames(const std::vector<std::pair<std::string, ForeignNode>>& entries) {

@@ -37,7 +37,7 @@ void find_paint_points(const MapIndex& map, const Se2& map_from_vehicle, double 
       continue;
     }
     const Eigen::Vector2d& from = element.points[segment.first];
-    const Eigen::Vector2d& to = element.points[(segment.first + 1) % element.points.size()];
+    const Eigen::Vector2d& to = segment_end(element, segment.first);
     const double length_m = (to - from).norm();
     if (length_m < kPaintStep_m) continue;
     PaintPoint point;

@@ -45,8 +45,10 @@ class RigRefiner {
     for (const Round& round : kRounds) {
       if (Status read = look(round); !read) return tl::unexpected(read.error());
       if (framesets_ < kLeastFramesets) {
-        return fail("recording: found {} framesets apart with a reference pose, wanted {} or more",
-                    framesets_, kLeastFramesets);
+        return fail(
+            "recording: found {} framesets that have a reference pose and are far enough apart, "
+            "wanted {} or more",
+            framesets_, kLeastFramesets);
       }
       solve(round);
     }

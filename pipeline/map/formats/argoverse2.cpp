@@ -128,7 +128,7 @@ class Argoverse2Reader {
           driven.right = flat(*right);
           if (!can_be_lane(driven.left, driven.right)) {
             builder_.leave_out(
-                fmt::format("{}: found bounds of a single point or too long, wanted 2 "
+                fmt::format("{}: found bounds that have a single point or are too long, wanted 2 "
                             "points or more, and at most {:g} m",
                             json_.place(path), kLongestPolylineM));
             return {};

@@ -71,8 +71,7 @@ Status check_rules(const ClassTable& classes, const ImportReport& report, const 
     if (is_hidden) {
       return fail(
           "{}: an earlier rule already takes every kind that the rule for \"{}\" fits; move the "
-          "rule "
-          "for \"{}\" before it",
+          "rule for \"{}\" before it",
           rule.place, rule.kind, rule.kind);
     }
     return fail("{}: found a rule for \"{}\", wanted a kind that is in {} ({} kinds)", rule.place,

@@ -35,7 +35,8 @@ class GeojsonReader {
     const JsonPath path("/features");
     if (options_.origin) {
       return fail(
-          "{}: found an origin for GeoJSON, wanted none: its positions are on earth already",
+          "{}: found an origin for GeoJSON, wanted none: its positions are longitudes and "
+          "latitudes already",
           json_.file());
     }
     if (!features.is_array()) {
@@ -288,18 +289,18 @@ class GeojsonWriter {
 
   json element(size_t index) const {
     const MapElement& element = map_.elements[index];
-    const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing;
+    const bool ring = is_ring(element.element_class);
     json line =
         positions(element.points, index < heights_m_.size() ? heights_m_[index] : Heights());
-    if (is_ring && !line.empty()) line.push_back(line.front());
+    if (ring && !line.empty()) line.push_back(line.front());
     return {
         {"type", "Feature"},
         {"id", index},
         {"properties",
          {{"class", name_of(element.element_class)}, {"appearance", name_of(element.appearance)}}},
         {"geometry",
-         {{"type", is_ring ? "Polygon" : "LineString"},
-          {"coordinates", is_ring ? json::array({line}) : line}}}};
+         {{"type", ring ? "Polygon" : "LineString"},
+          {"coordinates", ring ? json::array({line}) : line}}}};
   }
 
   json feature_of(const Lane& lane) const {
@@ -331,8 +332,8 @@ Result<std::string> to_geojson(const ImportedMap& imported) {
   const HdMap& map = imported.map;
   if (!is_known(map.origin)) {
     return fail(
-        "{}: found no place on earth, wanted one for GeoJSON; --origin LATITUDE,LONGITUDE "
-        "of an import gives it",
+        "{}: found no place on earth, wanted one for GeoJSON; import the map with --origin "
+        "LATITUDE,LONGITUDE",
         map.name);
   }
   return GeojsonWriter(map, imported.heights_m).write();

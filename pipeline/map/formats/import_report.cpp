@@ -48,8 +48,7 @@ void ImportReport::remark_far_origin(const Eigen::Vector2d& middle) {
   remark(fmt::format(
       "--origin: the middle of the map is {:.1f} km from (0, 0), so x must point to true east at "
       "(0, 0), which it does not in MGRS and UTM grids; if a Lanelet2 map has MGRS coordinates, "
-      "add "
-      "the tag mgrs_code to its nodes and leave --origin out",
+      "add the tag mgrs_code to its nodes and leave --origin out",
       middle.norm() / 1000.0));
 }
 

@@ -99,14 +99,14 @@ std::string_view shape_element(MapElement& element, Heights& heights_m) {
   for (size_t i = 0; i < points.size(); ++i) {
     if (i == 0 || points[i] != points[i - 1]) distinct.push_back(i);
   }
-  const bool is_ring = element.element_class == ElementClass::kPedestrianCrossing;
-  if (is_ring && distinct.size() > 1 && points[distinct.back()] == points.front()) {
+  const bool ring = is_ring(element.element_class);
+  if (ring && distinct.size() > 1 && points[distinct.back()] == points.front()) {
     distinct.pop_back();
   }
   keep(distinct);
-  if (is_ring) keep(corners_of_ring(points));
-  if (points.size() < (is_ring ? 3 : 2)) return "too few points";
-  if (is_ring && area_of_ring_m2(points) < kLeastCrossing_m2) return "no area of a crossing";
+  if (ring) keep(corners_of_ring(points));
+  if (points.size() < (ring ? 3 : 2)) return "too few points";
+  if (ring && area_of_ring_m2(points) < kLeastCrossing_m2) return "too small for a crossing";
   return "";
 }
 
@@ -178,7 +178,7 @@ void MapBuilder::place(const Projection* projection) {
     });
     return;
   }
-  remark("the file does not say where on earth it is: --origin LATITUDE,LONGITUDE does");
+  remark("the file does not say where on earth it is; give --origin LATITUDE,LONGITUDE");
   if (center.norm() <= kFarFromZeroM) return;
   const Eigen::Vector2d shift = -center.array().round().matrix();
   report_.remark_shift(shift);

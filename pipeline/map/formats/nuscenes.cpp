@@ -117,7 +117,9 @@ class NuscenesReader {
 
   Result<Line3> nodes_of(const json& tokens, const JsonPath& path) const {
     Line3 line;
-    if (!tokens.is_array()) return fail("{}: found no list of nodes", json_.place(path));
+    if (!tokens.is_array()) {
+      return fail("{}: found no list of nodes, wanted one", json_.place(path));
+    }
     for (size_t i = 0; i < tokens.size(); ++i) {
       const auto node = nodes_.find(id_text(tokens[i]));
       if (node == nodes_.end()) {
@@ -134,7 +136,8 @@ class NuscenesReader {
                           const JsonPath& path) const {
     const auto found = tokens.find(text_member(record, key));
     if (found != tokens.end()) return found->second;
-    return fail("{}: found a {} that is missing, wanted it in the file", json_.place(path), key);
+    return fail("{}: found a {} that refers to a missing record, wanted the record in the file",
+                json_.place(path), key);
   }
 
   Status read_dividers() {
@@ -288,8 +291,10 @@ class NuscenesReader {
           return v.is_number() && v.get<double>() >= 0.0 && v.get<double>() <= kLongestCurve_m;
         });
     if (!is_good) {
-      return fail("{}: found no start_pose, shape, radius and segment_length that fit, wanted them",
-                  json_.place(path));
+      return fail(
+          "{}: found no start_pose, shape, radius and segment_length that fit together, wanted all "
+          "four",
+          json_.place(path));
     }
     Eigen::Vector2d at(start[0].get<double>(), start[1].get<double>());
     double heading = start[2].get<double>();

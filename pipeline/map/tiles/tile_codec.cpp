@@ -81,10 +81,9 @@ Status decode_rest(const TileDirectory& directory, HdMap& map) {
     if (decoder.error()) break;
     MapElement& element = map.elements[index];
     const bool fits = element.points.empty() && points.size() < 2 &&
-                      element_class <= static_cast<uint8_t>(ElementClass::kRoadBoundary) &&
-                      appearance <= static_cast<uint8_t>(Appearance::kHedge);
+                      element_class < kElementClasses && appearance < kAppearances;
     if (!fits) {
-      decoder.reject("an element that cannot be");
+      decoder.reject("an element that no map can have");
       break;
     }
     element = {static_cast<ElementClass>(element_class), static_cast<Appearance>(appearance),

@@ -54,7 +54,7 @@ struct TiledMapFacts {
   uint32_t checksum = 0;  ///< map_checksum() of the whole map
   uint32_t elements = 0;
   uint32_t lanes = 0;
-  uint32_t of_class[3] = {0, 0, 0};  ///< elements of each class
+  uint32_t of_class[kElementClasses] = {};  ///< elements of each class
   uint32_t tiles = 0;
 };
 

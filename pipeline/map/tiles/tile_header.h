@@ -17,7 +17,7 @@ struct TileHeader {
   uint32_t checksum = 0;
   uint32_t elements = 0;
   uint32_t lanes = 0;
-  uint32_t of_class[3] = {0, 0, 0};
+  uint32_t of_class[kElementClasses] = {};
   uint32_t tiles = 0;
   uint32_t tile_quanta = 0;
   uint32_t name_size = 0;

@@ -22,8 +22,6 @@ struct TilePiece {
 template <typename Use>
 bool for_each_piece(std::string_view tile, int32_t column, int32_t row, uint32_t elements,
                     Use use) {
-  constexpr auto kClasses = static_cast<uint8_t>(ElementClass::kRoadBoundary) + 1;
-  constexpr auto kAppearances = static_cast<uint8_t>(Appearance::kHedge) + 1;
   CompactDecoder decoder(tile);
   uint64_t element = 0;
   while (!decoder.at_end()) {
@@ -35,8 +33,8 @@ bool for_each_piece(std::string_view tile, int32_t column, int32_t row, uint32_t
     piece.element_class = static_cast<ElementClass>(look & 3U);
     piece.appearance = static_cast<Appearance>(look >> 2U);
     piece.count = decoder.count(2);
-    if (element >= elements || (look & 3U) >= kClasses || (look >> 2U) >= kAppearances) {
-      decoder.reject("a piece that cannot be");
+    if (element >= elements || (look & 3U) >= kElementClasses || (look >> 2U) >= kAppearances) {
+      decoder.reject("a piece that no map can have");
     }
     if (decoder.error()) return false;
     decoder.start_from(column * kTileQuanta, row * kTileQuanta);

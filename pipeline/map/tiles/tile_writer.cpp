@@ -74,16 +74,15 @@ Runs runs_of(const HdMap& map, const std::vector<std::vector<QuantisedPoint>>& e
   for (uint32_t e = 0; e < elements.size(); ++e) {
     const auto& points = elements[e];
     const auto count = static_cast<uint32_t>(points.size());
-    const bool is_ring = map.elements[e].element_class == ElementClass::kPedestrianCrossing;
-    const uint32_t segments = is_ring && count > 2 ? count : count > 0 ? count - 1 : 0;
-    for (uint32_t i = 0; i < segments; ++i) {
+    const bool is_whole = is_ring(map.elements[e].element_class);
+    for (uint32_t i = 0; i < segment_count(map.elements[e]); ++i) {
       for_each_tile(points[i], points[(i + 1) % count], [&](int32_t row, int32_t column) {
         std::vector<Run>& tile = runs[{row, column}];
         const bool goes_on =
-            !tile.empty() && tile.back().element == e && (is_ring || tile.back().last == i);
+            !tile.empty() && tile.back().element == e && (is_whole || tile.back().last == i);
         if (!goes_on) {
-          tile.push_back({e, is_ring ? 0 : i, is_ring ? count - 1 : i + 1});
-        } else if (!is_ring) {
+          tile.push_back({e, is_whole ? 0 : i, is_whole ? count - 1 : i + 1});
+        } else if (!is_whole) {
           tile.back().last = i + 1;
         }
       });

@@ -9,9 +9,9 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "common/crc32.h"
+#include "common/file_descriptor.h"
 #include "pipeline/map/tiles/tile_piece.h"
 
 namespace bevloc {
@@ -19,21 +19,18 @@ namespace {
 
 /// Maps a whole file for reading.
 Result<std::string_view> map_file(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat status {};
-  if (file < 0 || fstat(file, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0) {
-    const int error = errno;
-    if (file >= 0) close(file);
+  if (file.get() < 0 || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode) ||
+      status.st_size == 0) {
     return fail("{}: found no readable file ({}), wanted a compact map", path.string(),
-                std::strerror(error));
+                std::strerror(errno));
   }
   const auto size = static_cast<size_t>(status.st_size);
-  void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
-  const int error = errno;
-  close(file);
+  void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
   if (bytes == MAP_FAILED) {
     return fail("{}: cannot map {} bytes into memory ({})", path.string(), size,
-                std::strerror(error));
+                std::strerror(errno));
   }
   return std::string_view(static_cast<const char*>(bytes), size);
 }
@@ -128,9 +125,7 @@ void TiledMap::add_tile(size_t index, const Eigen::Vector2d& min_corner,
                      add(segment);
                      ++segment.first;
                    }
-                   const bool is_ring =
-                       piece.element_class == ElementClass::kPedestrianCrossing && piece.count > 2;
-                   if (!is_ring) return;
+                   if (!is_ring(piece.element_class) || piece.count <= 2) return;
                    segment.from = segment.to;
                    segment.to = start;
                    add(segment);

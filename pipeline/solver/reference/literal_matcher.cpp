@@ -149,10 +149,7 @@ void LiteralMatcher::solve_axis(const HypothesisAxis& axis, double yaw_rad, bool
 }
 
 void LiteralMatcher::move(const Se2& correction, CellFeatures& moved) const {
-  const FeatureWarp warped(bev_, correction);
-  for (int row = 0; row < grid_.rows; ++row) {
-    warp(warped.line(row, 0, grid_.cols), moved.mutable_cell(row, 0));
-  }
+  warp_all(bev_, correction, moved.mutable_cell(0, 0), moved.row_stride());
 }
 
 void LiteralMatcher::yaw_features(std::span<const float> amplitude, std::vector<float>& yaw) const {

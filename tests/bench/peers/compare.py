@@ -23,6 +23,7 @@ from tests.bench.document import ROOT, write_table
 from tests.training.onnxruntime_check import modules_folder, what_is_missing
 from training.data import view_table
 from training.errors import run_program
+from training.markdown import table
 from training.model import IMAGE_OFFSET
 
 _HERE = Path(__file__).resolve().parent
@@ -133,15 +134,15 @@ def table_of(comparisons: list[Comparison], thread_counts: list[int]) -> str:
     for threads in thread_counts:
         unit = "thread" if threads == 1 else "threads"
         headings += [f"bevloc, ms, {threads} {unit}", "peer, ms", "peer / bevloc"]
-    lines = [headings, ["---", *["---:"] * (len(headings) - 1)]]
+    rows = []
     for comparison in comparisons:
         cells = [comparison.title]
         for threads in thread_counts:
             sides = comparison.ours[threads], comparison.theirs[threads]
             cells += [f"{statistics.median(side):.2f}" for side in sides]
             cells.append(f"{comparison.ratio(threads):.2f}")
-        lines.append(cells)
-    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
+        rows.append(cells)
+    return table(headings, rows)
 
 
 def main() -> None:
@@ -157,10 +158,10 @@ def main() -> None:
     comparisons = compare(
         arguments.model, arguments.rounds, arguments.frames, arguments.threads
     )
-    table = table_of(comparisons, arguments.threads)
-    print(table, end="")
+    text = table_of(comparisons, arguments.threads)
+    print(text, end="")
     if arguments.write:
-        write_table("peers", table)
+        write_table("peers", text)
 
 
 if __name__ == "__main__":

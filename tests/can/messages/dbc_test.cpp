@@ -1,6 +1,4 @@
 #include <bit>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -14,16 +12,12 @@
 #include "can/messages/message_table.h"
 #include "can/messages/pose_report.h"
 #include "tests/can/messages/dbc_parser.h"
+#include "tests/support/text.h"
 
 namespace bevloc::can {
 namespace {
 
 const std::string kSource = BEVLOC_SOURCE_DIR;
-
-std::string content_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 std::vector<const Signal*> all_signals(const Message& message) {
   const auto header = e2e_header(message.format);
@@ -33,12 +27,12 @@ std::vector<const Signal*> all_signals(const Message& message) {
 }
 
 TEST(Dbc, CommittedFileMatchesTheMessageTable) {
-  EXPECT_EQ(content_of(kSource + "/can/bevloc.dbc"), dbc_text())
+  EXPECT_EQ(test::read_text(kSource + "/can/bevloc.dbc"), dbc_text())
       << "write it again: bevloc_dbc > can/bevloc.dbc";
 }
 
 TEST(Dbc, DocumentedTablesMatchTheMessageTable) {
-  EXPECT_NE(content_of(kSource + "/docs/can.md").find(markdown_tables()), std::string::npos)
+  EXPECT_NE(test::read_text(kSource + "/docs/can.md").find(markdown_tables()), std::string::npos)
       << "replace them by the output of: bevloc_dbc --markdown";
 }
 
@@ -52,7 +46,8 @@ TEST(Dbc, ConstantsOfConsumersHaveTheGivenBase) {
 TEST(Dbc, DocumentedExampleFrameIsRight) {
   Frame frame = blank_frame(loc_pos_local::kMessage, BaseIds{});
   E2eSender(loc_pos_local::kMessage.protection()).protect(frame);
-  EXPECT_NE(content_of(kSource + "/docs/can.md").find("`504#D700000080000080`"), std::string::npos);
+  EXPECT_NE(test::read_text(kSource + "/docs/can.md").find("`504#D700000080000080`"),
+            std::string::npos);
   EXPECT_TRUE(candump_line({}, "can0", frame).ends_with(" 504#D700000080000080"));
 }
 

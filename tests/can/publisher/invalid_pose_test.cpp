@@ -115,6 +115,26 @@ TEST_F(PosePublisherTest, AStalePoseIsNeverValid) {
   EXPECT_TRUE(is_sna("LOC_Time", "CaptureAge"));
 }
 
+/// Consumers take CaptureTime + CaptureAge as the time of the pose.
+TEST_F(PosePublisherTest, TheAgeOfTheImagesLeadsToTheTimeOfAValidPose) {
+  publish(tracking_report(kNow), kNow + kMaxPoseAge);
+  EXPECT_EQ(value("LOC_Status", "State"), 2.0);
+  EXPECT_NEAR(value("LOC_Time", "CaptureAge"), 83.0, 0.051);
+
+  const Time later = kNow + seconds(1);
+  publish(tracking_report(later), later + milliseconds(60));
+  expect_lost_because("Why_PoseStale");
+  EXPECT_NEAR(value("LOC_Time", "CaptureAge"), 143.0, 0.051) << "without a pose, until sending";
+}
+
+TEST_F(PosePublisherTest, ReturnsTheStatusThatItSends) {
+  PoseReport report = tracking_report(kNow);
+  EXPECT_EQ(publisher_.publish(report, kNow), report.status);
+  const LocalizerStatus sent = publisher_.publish(report, kNow + milliseconds(60));
+  EXPECT_EQ(sent.state, HealthState::kLost);
+  EXPECT_TRUE(sent.why.has(Why::kPoseStale));
+}
+
 TEST_F(PosePublisherTest, AnAgeOfTheImagesBeyondTheRangeIsSna) {
   PoseReport report = tracking_report(kNow);
   report.capture_time = kNow - milliseconds(6553);

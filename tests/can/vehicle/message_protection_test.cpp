@@ -80,7 +80,7 @@ TEST(MessageProtectionTest, RefusesACounterBeyondTheHighest) {
 }
 
 TEST(MessageProtectionTest, AcceptsMessagesWithoutProtection) {
-  const E2eFrame frame = e2e_frame_of(some_frame(), {}, 8);
+  const E2eFrame frame = e2e_frame_of(some_frame(), MessageProtection{}, 8);
   EXPECT_TRUE(frame.right_length && frame.right_crc);
   EXPECT_FALSE(frame.counter);
 }

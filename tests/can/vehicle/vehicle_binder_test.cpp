@@ -186,9 +186,10 @@ TEST_F(VehicleBinderTest, RefusesValuesThatShareBits) {
     const auto binding = binder.finish();
     return binding ? "" : error_of<void>(tl::unexpected(binding.error().refusal));
   };
-  EXPECT_EQ(finish_with(": 24|16"), "A.Other in the bits of A.Left, wanted each value by itself");
+  EXPECT_EQ(finish_with(": 24|16"),
+            "A.Other in the bits of A.Left, wanted separate bits for each value");
   EXPECT_EQ(finish_with("m1 : 48|16"),
-            "A.Other in the bits of A.Near, wanted each value by itself");
+            "A.Other in the bits of A.Near, wanted separate bits for each value");
   EXPECT_EQ(finish_with("m2 : 40|16"), "") << "on another page";
 }
 
@@ -308,14 +309,14 @@ TEST_F(VehicleBinderTest, RefusesACounterInsideAValue) {
   EXPECT_EQ(speed("Speed"), "");
   ASSERT_TRUE(binder_.condition("Gear", "A", {"N"}));
   EXPECT_EQ(protect({.message = "A", .counter = "Gear"}), "");
-  EXPECT_EQ(finish(), "A: A.Gear in the bits of its counter, wanted each by itself");
+  EXPECT_EQ(finish(), "A: A.Gear in the bits of its counter, wanted separate bits for each");
 }
 
 TEST_F(VehicleBinderTest, RefusesAValueWhereAProfileHasItsCounter) {
   ASSERT_TRUE(binder_.condition("Counter", "A", {"1"}));
   EXPECT_EQ(speed("Speed"), "");
   EXPECT_EQ(protect({.message = "A", .kind = ChecksumKind::kE2eP02, .data_ids = {1}}), "");
-  EXPECT_EQ(finish(), "A: A.Counter in the bits of its counter, wanted each by itself");
+  EXPECT_EQ(finish(), "A: A.Counter in the bits of its counter, wanted separate bits for each");
 }
 
 }  // namespace

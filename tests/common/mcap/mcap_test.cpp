@@ -30,10 +30,10 @@ class McapTest : public testing::Test {
     auto writer = Writer::create(path_);
     ASSERT_TRUE(writer) << writer.error().message;
     writer_ = std::move(*writer);
-    const auto schema = writer_->add_schema("bevloc.Test", "protobuf", "a descriptor");
+    const auto schema = writer_->add_schema("bevloc.Test", "a descriptor");
     ASSERT_TRUE(schema);
-    frames_ = writer_->add_channel(*schema, "/can/in", "protobuf").value();
-    images_ = writer_->add_channel(*schema, "/camera/front", "protobuf").value();
+    frames_ = writer_->add_channel(*schema, "/can/in").value();
+    images_ = writer_->add_channel(*schema, "/camera/front").value();
     ASSERT_TRUE(writer_->add_metadata({"bevloc", {{"model", "nano"}, {"map", "town"}}}));
     ASSERT_TRUE(writer_->add_attachment({7, "rig.yaml", "application/yaml", "cameras: {}\n"}));
   }

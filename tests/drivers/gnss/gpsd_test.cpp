@@ -8,6 +8,7 @@
 
 #include "drivers/gnss/gpsd_client.h"
 #include "tests/support/mock_gpsd.h"
+#include "tests/support/text.h"
 
 namespace bevloc::drivers {
 namespace {
@@ -34,16 +35,9 @@ GpsdLine line_of(const std::string& text) {
   return GpsdReader().read(text).line;
 }
 
-/// The text with `from` replaced by `to`.
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const size_t position = text.find(from);
-  EXPECT_NE(position, std::string::npos) << from;
-  return text.replace(position, from.size(), to);
-}
-
 /// A report of a fix with `from` replaced by `to`.
 std::string fix_with(const std::string& from, const std::string& to) {
-  return replaced(kFix, from, to);
+  return test::replaced(kFix, from, to);
 }
 
 /// Reads a fix and the accuracy for it. Returns the sigma of a second fix.
@@ -88,14 +82,14 @@ TEST(GpsdReaderTest, PrefersTheReceiversOwnAccuracy) {
 
 TEST(GpsdReaderTest, ForgetsTheAccuracyWhenTheKindOfFixChanges) {
   GpsdReader reader;
-  const std::string single = replaced(kRtkFix, "\"status\":3", "\"status\":1");
+  const std::string single = test::replaced(kRtkFix, "\"status\":3", "\"status\":1");
   EXPECT_GT(sigma_after_accuracy(reader, single), 9.0);
   EXPECT_GT(reader.read(single).fix.sigma_east_m, 9.0) << "until the next GST";
 }
 
 TEST(GpsdReaderTest, DoesNotGiveTheAccuracyOfOneReceiverToAnother) {
   GpsdReader reader;
-  EXPECT_GT(sigma_after_accuracy(reader, replaced(kRtkFix, "/dev/pts/0", "/dev/pts/1")), 9.0);
+  EXPECT_GT(sigma_after_accuracy(reader, test::replaced(kRtkFix, "/dev/pts/0", "/dev/pts/1")), 9.0);
 }
 
 TEST(GpsdReaderTest, ReadsOnlyTimesOfTheFormThatItNames) {

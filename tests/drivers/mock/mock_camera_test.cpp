@@ -130,6 +130,18 @@ TEST(MockCamera, DarkBlindedDirtyTurnedAndMovedPicturesDifferOnlyDuringTheFault)
   }
 }
 
+TEST(MockCamera, DirtAndNoiseOfAFaultDependOnItsSeed) {
+  for (const FaultKind kind :
+       {FaultKind::kCameraDark, FaultKind::kCameraBlinded, FaultKind::kCameraDirty}) {
+    MockCameraConfig config = camera_with(1, make_fault(kind, 0.1));
+    const auto first = first_images(config, 2);
+    config.fault_seed = 1;
+    const auto second = first_images(config, 2);
+    EXPECT_EQ(first[0], second[0]) << info_of(kind).name << ": before the fault";
+    EXPECT_NE(first[1], second[1]) << info_of(kind).name;
+  }
+}
+
 TEST(MockCamera, ALoopShowsTheSamePixelsAgain) {
   sim::Fault loop = make_fault(FaultKind::kCameraLoop, 0.1);
   loop.amounts.pictures = 2;

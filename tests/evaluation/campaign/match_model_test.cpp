@@ -173,6 +173,35 @@ TEST(MatchTableTest, SaysWhichLineIsBad) {
   EXPECT_THAT(read.error().message, testing::HasSubstr(":602: found '1,2,three'"));
 }
 
+TEST(MatchTableTest, RefusesAnUnknownRange) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "matches.csv";
+  std::string text = to_csv(biased_table());
+  text += "0,200,200000,0,2,0,0,0,0,0,0,100,50,100,0,0,0,0,0,0,0,0,0,0,0,0,0\n";
+  ASSERT_TRUE(write_file(file, text));
+  const auto read = read_match_table(file);
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message, testing::HasSubstr(file + ":602: found the range 2"));
+}
+
+TEST(MatchTableTest, RefusesADriveWithoutMatchesOfBothRanges) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "matches.csv";
+  MatchTable table = biased_table();
+  for (MeasuredPlace& place : table.places) {
+    if (place.frame < 100) continue;
+    place.drive = 7;
+    std::erase_if(place.matches, [](const MeasuredMatch& match) {
+      return match.range == SearchRange::kAcquiring;
+    });
+  }
+  ASSERT_TRUE(write_file(file, to_csv(table)));
+  const auto read = read_match_table(file);
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message,
+              testing::HasSubstr(file + ": found no match of range 1 (acquiring) in drive 7"));
+}
+
 TEST(MatchModelTest, APlaceBesideTheTrueOneHasTheScoreThatWasMeasuredThere) {
   MatchTable table = biased_table();
   for (MeasuredPlace& place : table.places) {

@@ -114,6 +114,7 @@ TEST(RunJudgeTest, TellsALostPoseFromOneThatWasNeverValid) {
   RunJudge never({0.0, 15.0}, {});
   feed(never, 0.0, 10.0, lost_cycle);
   EXPECT_EQ(never.outcome().detected_by, "never valid");
+  EXPECT_FALSE(never.outcome().detection_s) << "nothing was detected at any time";
   RunJudge later({0.0, 15.0}, {});
   feed(later, 0.0, 2.0, lost_cycle);
   feed(later, 2.0, 5.0, kWrong);
@@ -121,6 +122,28 @@ TEST(RunJudgeTest, TellsALostPoseFromOneThatWasNeverValid) {
   feed(later, 5.0, 6.0, lost_cycle);
   EXPECT_EQ(later.outcome().detected_by, "not valid");
   EXPECT_NEAR(*later.outcome().detection_s, 5.0, 1e-9);
+}
+
+TEST(RunJudgeTest, ASilentApplianceIsNotValid) {
+  RunJudge judge(kFault, Why::kClockGap);
+  feed(judge, 0.0, 10.0, kRight);
+  feed(judge, 13.0, 20.0, kRight);
+  const RunOutcome outcome = judge.outcome();
+  EXPECT_EQ(outcome.cycles, 2000U);
+  EXPECT_EQ(outcome.valid, 1700U);
+  EXPECT_EQ(outcome.lost, 1);
+  EXPECT_EQ(outcome.false_lost, 0);
+  EXPECT_EQ(outcome.detected_by, "not valid");
+  EXPECT_NEAR(*outcome.detection_s, 0.0, 1e-9);
+  EXPECT_EQ(outcome.timeline.size(), 1U) << "it said nothing new";
+}
+
+TEST(RunJudgeTest, AnApplianceThatIsSilentBeforeItsFirstPoseLosesNothing) {
+  RunJudge judge(kFault, {});
+  feed(judge, 0.0, 1.0, lost_cycle);
+  feed(judge, 4.0, 20.0, kRight);
+  EXPECT_EQ(judge.outcome().cycles, 1600U);
+  EXPECT_EQ(judge.outcome().lost, 0);
 }
 
 TEST(RunJudgeTest, CallsItRecoveredOnceThePoseStaysRight) {

@@ -12,10 +12,13 @@ namespace {
 
 using testing::HasSubstr;
 
+/// The length of the planned drive.
+constexpr double kPlanned_s = 80.0;
+
 class FaultSocketTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto server = FaultServer::open(path_, faults_, true);
+    auto server = FaultServer::open(path_, faults_, kPlanned_s, true);
     ASSERT_TRUE(server) << server.error().message;
     server_ = std::move(*server);
   }
@@ -65,8 +68,19 @@ TEST_F(FaultSocketTest, SaysWhyACommandIsRefused) {
   EXPECT_TRUE(faults_->list().empty());
 }
 
+TEST_F(FaultSocketTest, RefusesASuspensionBeyondTheEndOfTheDrive) {
+  EXPECT_THAT(error_of("set clock_suspend gap_s=69"), HasSubstr("found 69, wanted at most 68.0"));
+  EXPECT_THAT(error_of("set clock_suspend gap_s=21 from_s=60"), HasSubstr("wanted at most 20.0"));
+  EXPECT_THAT(error_of("set clock_suspend gap_s=3600"), HasSubstr("simulation.faults"));
+  EXPECT_TRUE(faults_->list().empty());
+  EXPECT_EQ(error_of("set clock_suspend gap_s=60"), "");
+  EXPECT_THAT(error_of("set clock_suspend gap_s=9"), HasSubstr("found 9, wanted at most 8.0"));
+  EXPECT_EQ(error_of("set clock_suspend gap_s=8"), "");
+  EXPECT_EQ(error_of("set clock_gap gap_s=3600"), "") << "the drive goes on with the clock";
+}
+
 TEST_F(FaultSocketTest, AServerReplacesTheSocketOfAnEarlierRunAndRemovesItsOwn) {
-  const auto second = FaultServer::open(path_, faults_, true);
+  const auto second = FaultServer::open(path_, faults_, kPlanned_s, true);
   EXPECT_TRUE(second);
   server_.reset();
   EXPECT_FALSE(std::filesystem::exists(path_));

@@ -115,7 +115,7 @@ Received drive_with(const std::vector<sim::Fault>& faults) {
   EXPECT_TRUE(drive) << drive.error().message;
   can::MockWire wire(4096);
   drivers::VirtualClock clock(kStart);
-  FaultyBus bus(wire.connect(), drive->faults(), clock, kStart);
+  FaultyBus bus(wire.connect(), drive->faults(), clock, kStart, config.simulation->seed);
   SimulatedVehicle vehicle(*drive, config.simulation->seed, config.can, wire.connect(), kStart);
   Reader reader(drive->map().origin);
   for (; clock.now() < kStart + std::chrono::seconds(12);
@@ -189,6 +189,18 @@ TEST(InputFaults, AfterASuspensionTheVehicleIsElsewhere) {
   }
 }
 
+TEST(InputFaults, ASuspensionThatIsSetLaterShortensTheDrive) {
+  const auto drive = SimulatedDrive::create(config_with({}));
+  ASSERT_TRUE(drive) << drive.error().message;
+  const double length_s = drive->drive()->duration_s();
+  EXPECT_GT(length_s, 20.0) << "it goes on beyond its configured duration";
+  EXPECT_FALSE(drive->is_over(20.0));
+  drive->faults()->add(
+      with(make_fault(FaultKind::kClockSuspend, 5.0), &sim::FaultAmounts::gap_s, 15.0));
+  EXPECT_FALSE(drive->is_over(length_s - 15.1));
+  EXPECT_TRUE(drive->is_over(length_s - 14.9));
+}
+
 TEST(InputFaults, NothingArrivesInAGapOfTheClock) {
   const Received gap =
       drive_with({with(make_fault(FaultKind::kClockGap, 5.0), &sim::FaultAmounts::gap_s, 3.0)});
@@ -249,7 +261,7 @@ TEST(FaultyBusTest, OldFramesReachTheWireAfterALackOfAcknowledgement) {
       make_fault(FaultKind::kBusNoAcknowledge, 1.0, 2.0), &sim::FaultAmounts::stale_frames, 3.0)});
   can::MockWire wire;
   drivers::VirtualClock clock(kStart);
-  FaultyBus bus(wire.connect(), faults, clock, kStart);
+  FaultyBus bus(wire.connect(), faults, clock, kStart, 1);
   const auto other = wire.connect();
   const auto send = [&](uint32_t id, double time_s) {
     return bus.send({.id = id, .length = 1}, kStart + from_seconds(time_s));

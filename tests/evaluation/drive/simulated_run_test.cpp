@@ -1,7 +1,6 @@
 // Whole short drives in lockstep: pictures from a cache, gaps of the clock, threads that hang.
 #include "evaluation/drive/simulated_run.h"
 
-#include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -9,6 +8,7 @@
 #include "pipeline/calibration/rig_yaml.h"
 #include "sim/faults/fault_table.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/text.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -37,11 +37,7 @@ class SimulatedRunTest : public testing::Test {
     return run_simulation(config_, rig_, options_,
                           [](const firmware::ApplianceView&) { return false; });
   }
-  std::string log() const {
-    std::ostringstream text;
-    text << std::ifstream(options_.out / "can.log").rdbuf();
-    return text.str();
-  }
+  std::string log() const { return test::read_text(options_.out / "can.log"); }
 
   DriveConfig config_;
   Rig rig_;

@@ -18,6 +18,7 @@
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/solver/read_out_case.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/text.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -43,12 +44,6 @@ Status run(std::vector<std::string> arguments, const std::string& model = kModel
   return command.run();
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
 class NetworkCommandTest : public testing::Test {
  protected:
   std::string file(const std::string& name) const { return folder_ / name; }
@@ -59,7 +54,7 @@ class NetworkCommandTest : public testing::Test {
 TEST_F(NetworkCommandTest, WritesARowPerMethod) {
   const Status status = run({"--frames", "4", "--json", file("a.json"), "--csv", file("a.csv")});
   ASSERT_TRUE(status) << status.error().message;
-  const auto json = nlohmann::json::parse(text_of(file("a.json")));
+  const auto json = nlohmann::json::parse(test::read_text(file("a.json")));
   EXPECT_EQ(json["model"], "nano");
   EXPECT_EQ(json["scenes"], 4);
   std::vector<std::string> solvers;
@@ -76,7 +71,7 @@ TEST_F(NetworkCommandTest, WritesARowPerMethod) {
   }
   EXPECT_THAT(solvers, ElementsAre("prior", "full-fft", "block", "decoupled", "decoupled+refine",
                                    "banded+refine"));
-  std::istringstream csv(text_of(file("a.csv")));
+  std::istringstream csv(test::read_text(file("a.csv")));
   std::string header;
   std::getline(csv, header);
   EXPECT_THAT(header, StartsWith("set,solver,scenes,mae_x_m"));
@@ -91,7 +86,7 @@ TEST_F(NetworkCommandTest, WritesARowPerMethod) {
 TEST_F(NetworkCommandTest, BaselinesHaveErrorsButNoDistribution) {
   ASSERT_TRUE(run(
       {"--frames", "2", "--rows", "baselines", "--json", file("a.json"), "--csv", file("a.csv")}));
-  const auto rows = nlohmann::json::parse(text_of(file("a.json")))["rows"];
+  const auto rows = nlohmann::json::parse(test::read_text(file("a.json")))["rows"];
   std::vector<std::string> names;
   for (const auto& row : rows) {
     names.push_back(row["solver"]);
@@ -103,7 +98,7 @@ TEST_F(NetworkCommandTest, BaselinesHaveErrorsButNoDistribution) {
     }
   }
   EXPECT_THAT(names, ElementsAre("prior", "icp", "distance-transform", "ipm"));
-  std::istringstream csv(text_of(file("a.csv")));
+  std::istringstream csv(test::read_text(file("a.csv")));
   std::string header;
   std::getline(csv, header);
   for (std::string line; std::getline(csv, line);) {
@@ -114,7 +109,7 @@ TEST_F(NetworkCommandTest, BaselinesHaveErrorsButNoDistribution) {
 
 TEST_F(NetworkCommandTest, EverySetHasItsRows) {
   ASSERT_TRUE(run({"--frames", "1", "--set", "all", "--json", file("a.json")}));
-  const auto json = nlohmann::json::parse(text_of(file("a.json")));
+  const auto json = nlohmann::json::parse(test::read_text(file("a.json")));
   EXPECT_EQ(json["rows"].size(), 6 * sim::kNuisanceSets);
   EXPECT_EQ(json["rows"].back()["set"], "unsynchronised_uncompensated");
 }
@@ -122,7 +117,7 @@ TEST_F(NetworkCommandTest, EverySetHasItsRows) {
 TEST_F(NetworkCommandTest, TheSameSeedGivesTheSameRows) {
   const auto rows = [this](const std::string& seed) {
     EXPECT_TRUE(run({"--frames", "2", "--seed", seed, "--json", file("a.json")}));
-    return nlohmann::json::parse(text_of(file("a.json")))["rows"];
+    return nlohmann::json::parse(test::read_text(file("a.json")))["rows"];
   };
   EXPECT_EQ(rows("3"), rows("3"));
   EXPECT_NE(rows("3"), rows("4"));
@@ -130,7 +125,7 @@ TEST_F(NetworkCommandTest, TheSameSeedGivesTheSameRows) {
 
 TEST_F(NetworkCommandTest, DrivesOnAnImportedMap) {
   ASSERT_TRUE(run({"--frames", "2", "--map", kMap, "--json", file("a.json")}));
-  EXPECT_EQ(nlohmann::json::parse(text_of(file("a.json")))["map"], kMap);
+  EXPECT_EQ(nlohmann::json::parse(test::read_text(file("a.json")))["map"], kMap);
 }
 
 constexpr const char* kKerbAlone =
@@ -157,7 +152,7 @@ TEST_F(NetworkCommandTest, TheProgramExitsWithTwoAndOneLine) {
   const std::string command =
       std::string(BEVLOC_PROGRAM) + " eval network --set snow 2> " + file("err");
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2);
-  const std::string message = text_of(file("err"));
+  const std::string message = test::read_text(file("err"));
   EXPECT_THAT(message, StartsWith("bevloc: set: found \"snow\""));
   EXPECT_EQ(std::ranges::count(message, '\n'), 1);
 }

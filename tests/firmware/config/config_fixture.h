@@ -3,25 +3,19 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "evaluation/drive/drive_config.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/text.h"
 
 namespace bevloc::firmware {
 
 inline const std::filesystem::path kSource = BEVLOC_SOURCE_DIR;
 
-inline std::string read_text(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  EXPECT_TRUE(file) << path;
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+using test::read_text;
 
 /// Gives each test an empty folder for a configuration and the files that it names.
 class ConfigTest : public testing::Test {

@@ -83,6 +83,36 @@ TEST_F(ConfigTest, NamesTheKeyOfEachGpioMistake) {
               HasSubstr("gpio: found GPIO lines with mock cameras"));
 }
 
+/// A configuration of real cameras with these keys and a trigger of 30 Hz.
+std::string triggered_cameras(const std::string& keys) {
+  return "cameras:\n"
+         "  driver: v4l2\n"
+         "  ids: {front_left: c0, front: c1, front_right: c2, back_left: c3, back: c4, "
+         "back_right: c5}\n" +
+         keys +
+         "calibration: {rig: rig.yaml}\n"
+         "map: {file: town.osm}\n"
+         "model: {file: m.onnx}\n"
+         "can: {driver: socketcan, interface: can0}\n"
+         "gpio: {trigger: {chip: soc, line: 17, rate_hz: 30}}\n";
+}
+
+TEST_F(ConfigTest, TheToleranceIsLessThanThePeriodOfTheTrigger) {
+  EXPECT_EQ(error_of(triggered_cameras("  tolerance_ms: 33\n")), "");
+  EXPECT_THAT(
+      error_of(triggered_cameras("  tolerance_ms: 40\n")),
+      AllOf(StartsWith(place(4)), HasSubstr("cameras.tolerance_ms: found a frame period or more")));
+}
+
+TEST_F(ConfigTest, CamerasAreNotSlowerThanTheirTrigger) {
+  EXPECT_EQ(error_of(triggered_cameras("  rate_hz: 30\n")), "");
+  EXPECT_EQ(error_of(triggered_cameras("  rate_hz: 31\n")), "");
+  EXPECT_EQ(error_of(triggered_cameras("  rate_hz: 20\n")),
+            place(4) +
+                "cameras.rate_hz: found 20 beside 30 in gpio.trigger.rate_hz, wanted no key, "
+                "because the trigger sets the rate, or at least the rate of the trigger");
+}
+
 TEST_F(ConfigTest, EverySectionIsRead) {
   const auto config = load(
       "cameras: {driver: mock, rate_hz: 20, buffers: 8, tolerance_ms: 1.5, wait_ms: 40, "

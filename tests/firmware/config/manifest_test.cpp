@@ -101,6 +101,23 @@ TEST_F(ManifestFiles, RefusesAMissingManifest) {
   EXPECT_THAT(check(), HasSubstr("bevloc.manifest: found no readable file"));
 }
 
+/// A new manifest says nothing about the files that were read before it was written.
+TEST_F(ManifestFiles, RefusesAManifestThatHasChangedSinceItWasRead) {
+  Config config;
+  EXPECT_TRUE(check_manifest_of(config)) << "there is none";
+  config.file = folder_ / "config.yaml";
+  config.map_file = folder_ / "maps/town.bvm";
+  config.manifest_file = folder_ / "bevloc.manifest";
+  config.kept_files.keep(config.manifest_file);
+  EXPECT_TRUE(check_manifest_of(config));
+  store("maps/town.bvm", "city");
+  store("bevloc.manifest", line("config.yaml") + line("maps/town.bvm"));
+  const Status changed = check_manifest_of(config);
+  ASSERT_FALSE(changed);
+  EXPECT_THAT(changed.error().message,
+              HasSubstr("bevloc.manifest: found a manifest that has changed since"));
+}
+
 /// The configuration names its manifest, and nothing is loaded from files that do not match.
 TEST_F(ManifestFiles, LoadConfigChecksTheManifest) {
   const fs::path source = BEVLOC_SOURCE_DIR;

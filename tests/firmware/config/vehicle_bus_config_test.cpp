@@ -82,7 +82,8 @@ TEST_F(VehicleBusConfigTest, SpeedsWhoseRangeBeginsAtZeroHaveNoSign) {
 TEST_F(VehicleBusConfigTest, SpeedsAndYawRatesNeedASign) {
   EXPECT_NE(error_with("      backward: {signal: TCU_Gear.GE_Position, values: [R]}\n", "")
                 .find("can.vehicle.wheel_speed.signals: found speeds that do not reach -1 m/s, "
-                      "wanted backward, which says when the vehicle reverses"),
+                      "wanted the key backward, which names the signal that says when the vehicle "
+                      "reverses"),
             std::string::npos);
   std::string dbc = read_text(folder_ / "vehicle_demo.dbc");
   const auto replace = [&dbc](const std::string& from, const std::string& to) {

@@ -8,17 +8,20 @@
 #include <gtest/gtest.h>
 
 #include "can/bus/mock_bus.h"
-#include "drivers/mock/mock_gpio.h"
+#include "common/crc32.h"
+#include "common/files.h"
+#include "common/sha256.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "tests/firmware/log_capture.h"
 #include "tests/firmware/runtime/fake_manager.h"
+#include "tests/support/mock_gpio.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
 namespace {
 
-using drivers::MockGpio;
 using std::chrono::milliseconds;
+using test::MockGpio;
 
 const std::filesystem::path kSourceFolder = BEVLOC_SOURCE_DIR;
 /// The daemon calls `stop` ten times per second. After this many calls the test fails.
@@ -46,6 +49,35 @@ class DaemonTest : public testing::Test {
     const auto rig = read_rig(kSourceFolder / "config/rig_demo.yaml");
     EXPECT_TRUE(rig) << rig.error().message;
     return run_daemon(config_, *rig, {gpio_, [this] { return wire_.connect(); }, stop, nullptr});
+  }
+
+  /// Runs, switches the ignition off, calls `change` in standby, and switches the ignition on
+  /// again. Ends when the appliance runs again.
+  Status run_again_after(const std::function<void()>& change) {
+    FakeManager manager;
+    std::string messages;
+    const auto tells = [&](const char* text) {
+      messages += manager.all();
+      const bool told = messages.find(text) != std::string::npos;
+      if (told) messages.clear();
+      return told;
+    };
+    int calls = 0;
+    int step = 0;
+    return run([&] {
+      if (step == 0 && tells("READY=1")) {
+        gpio_.drive("ignition", false);
+        step = 1;
+      } else if (step == 1 && tells("STATUS=standby")) {
+        change();
+        gpio_.drive("ignition", true);
+        step = 2;
+      } else if (step == 2 && tells("READY=1")) {
+        step = 3;
+      }
+      EXPECT_LT(++calls, kMaxCalls);
+      return step == 3 || calls == kMaxCalls;
+    });
   }
 
   bool fault() const { return !gpio_.high("fault"); }  // active low
@@ -100,6 +132,41 @@ TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
   // All lines were released.
   EXPECT_TRUE(gpio_.open_input({MockGpio::kChip, "ignition"}));
   EXPECT_TRUE(gpio_.open_output({MockGpio::kChip, "trigger"}, false));
+}
+
+TEST_F(DaemonTest, ChecksTheManifestAgainWhenTheIgnitionReturns) {
+  const std::filesystem::path model = folder_ / "model.onnx";
+  std::filesystem::copy_file(config_.model_file, model);
+  config_.model_file = model;
+  config_.manifest_file = folder_ / "bevloc.manifest";
+  std::string manifest;
+  for (const auto& file : {config_.model_file, config_.map_file}) {
+    manifest += sha256_hex(read_file(file).value()) + "  " + file.string() + "\n";
+  }
+  ASSERT_TRUE(write_file(config_.manifest_file, manifest));
+  const Status unchanged = run_again_after([] {});
+  EXPECT_TRUE(unchanged) << unchanged.error().message;
+  const Status changed = run_again_after([&] {
+    std::string bytes = read_file(model).value();
+    bytes.back() = static_cast<char>(bytes.back() ^ 1);
+    EXPECT_TRUE(write_file(model, bytes));
+  });
+  ASSERT_FALSE(changed);
+  EXPECT_THAT(changed.error().message, testing::HasSubstr("model.onnx: found SHA-256"));
+}
+
+TEST_F(DaemonTest, NamesTheRigInUseAlthoughItsFileHasChanged) {
+  config_.rig_file = folder_ / "rig.yaml";
+  std::filesystem::copy_file(kSourceFolder / "config/rig_demo.yaml", config_.rig_file);
+  config_.kept_files.keep(config_.rig_file);
+  const std::string rig = fmt::format(", rig {:08x},", crc32(read_file(config_.rig_file).value()));
+  const LogCapture log;
+  const Status status =
+      run_again_after([&] { std::ofstream(config_.rig_file, std::ios::app) << "# another rig\n"; });
+  EXPECT_TRUE(status) << status.error().message;
+  const size_t first = log.text().find(rig);
+  ASSERT_NE(first, std::string::npos) << log.text();
+  EXPECT_NE(log.text().find(rig, first + 1), std::string::npos) << log.text();
 }
 
 TEST_F(DaemonTest, ATriggerThatFailsIsLoggedOnce) {

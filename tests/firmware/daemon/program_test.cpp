@@ -1,10 +1,13 @@
 #include "firmware/daemon/program.h"
 
 #include <csignal>
+#include <filesystem>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/firmware/log_capture.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -36,6 +39,20 @@ TEST(ProgramOptionsTest, RecordRawNeedsARecording) {
   options.record = "folder";
   ASSERT_TRUE(override_config(options, config));
   EXPECT_EQ(config.record->images, RecordedImages::kRaw);
+}
+
+TEST(ProgramRigTest, IsThatOfTheFileAsItWasRead) {
+  const test::TemporaryFolder folder;
+  Config config;
+  config.rig_file = folder / "rig.yaml";
+  const auto missing = rig_of(config);
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().message, testing::StartsWith("calibration.rig: "));
+  std::filesystem::copy_file(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml", config.rig_file);
+  config.kept_files.keep(config.rig_file);
+  std::filesystem::remove(config.rig_file);
+  const auto rig = rig_of(config);
+  EXPECT_TRUE(rig) << rig.error().message;
 }
 
 }  // namespace

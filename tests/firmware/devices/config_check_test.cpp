@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "firmware/devices/camera_factory.h"
+#include "pipeline/network/test_frame.h"
 #include "tests/firmware/config/config_fixture.h"
 
 namespace bevloc::firmware {
@@ -81,7 +82,7 @@ TEST_F(ConfigCheckTest, ReadsTheRecordings) {
   EXPECT_TRUE(check_config(*config));
 }
 
-class WrittenFilesTest : public ConfigCheckTest {
+class GoodFilesTest : public ConfigCheckTest {
  protected:
   /// A configuration whose rig, model and map are good, and the file of a good key.
   Result<evaluation::DriveConfig> load_good() {
@@ -95,7 +96,7 @@ class WrittenFilesTest : public ConfigCheckTest {
   }
 };
 
-TEST_F(WrittenFilesTest, TheNumberOfStartsIsRead) {
+TEST_F(GoodFilesTest, TheNumberOfStartsIsRead) {
   auto config = load_good();
   ASSERT_TRUE(config) << config.error().message;
   config->can.secoc = SecocConfig{folder_ / "secoc.key", folder_ / "starts"};
@@ -108,7 +109,7 @@ TEST_F(WrittenFilesTest, TheNumberOfStartsIsRead) {
                          ": found 'forty-one', wanted one whole number of starts"));
 }
 
-TEST_F(WrittenFilesTest, TheirFoldersAreLookedFor) {
+TEST_F(GoodFilesTest, TheFoldersOfWrittenFilesAreLookedFor) {
   auto config = load_good();
   ASSERT_TRUE(config) << config.error().message;
   const std::filesystem::path in_a_file = folder_ / "town.osm" / "file";
@@ -121,6 +122,57 @@ TEST_F(WrittenFilesTest, TheirFoldersAreLookedFor) {
   EXPECT_THAT(check_config(*config).error().message,
               StartsWith("calibration.online.file: " + in_a_file.string() + ": cannot be written"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << "a check writes nothing";
+}
+
+/// Files whose model is the shipped one with some changed bytes. The daemon would refuse it, or end
+/// in FAULT.
+class ChangedModelTest : public GoodFilesTest {
+ protected:
+  void SetUp() override {
+    config_ = load_good();
+    ASSERT_TRUE(config_) << config_.error().message;
+    bytes_ = read_text(config_->model_file);
+  }
+
+  /// The first byte of the value that the model's metadata have for this key.
+  char& metadata_value(const std::string& key) {
+    const size_t position = bytes_.find(key);
+    EXPECT_NE(position, std::string::npos) << key;
+    size_t value = position + key.size() + 1;                            // behind the value's tag
+    while ((static_cast<uint8_t>(bytes_[value]) & 0x80U) != 0) ++value;  // its length is a varint
+    return bytes_[value + 1];
+  }
+
+  /// The error message of the check of the changed model.
+  std::string message() {
+    write("sub/model.onnx", bytes_);
+    const Status checked = check_config(*config_);
+    return checked ? "" : checked.error().message;
+  }
+
+  Result<evaluation::DriveConfig> config_ = fail("not loaded yet");
+  std::string bytes_;
+  const std::string place_ = "model.file: " + (folder_ / "sub/model.onnx").string() + ": ";
+};
+
+TEST_F(ChangedModelTest, TheShippedModelIsGood) {
+  EXPECT_EQ(message(), "");
+}
+
+TEST_F(ChangedModelTest, ReadsTheStoredAnswer) {
+  metadata_value(std::string(kAnswerKey)) = 'x';
+  EXPECT_THAT(message(), StartsWith(place_ + "metadata 'bevloc.test_frame_answer': found 'x"));
+}
+
+TEST_F(ChangedModelTest, ComparesTheStoredAnswer) {
+  char& digit = metadata_value(std::string(kAnswerKey));
+  digit = digit == '9' ? '1' : '9';
+  EXPECT_THAT(message(), StartsWith(place_ + "network: found "));
+}
+
+TEST_F(ChangedModelTest, MakesTheSolver) {
+  metadata_value("bevloc.solver.gem_omega") = '3';
+  EXPECT_THAT(message(), StartsWith("model.file: solver parameter gem_omega: found 3, wanted 1"));
 }
 
 TEST(ReadoutWarning, NamesTheCamerasThatDoNotUseIt) {

@@ -7,18 +7,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/mock/mock_gpio.h"
 #include "firmware/devices/fault_line.h"
 #include "firmware/devices/status_led.h"
 #include "firmware/runtime/trigger_thread.h"
 #include "tests/firmware/log_capture.h"
+#include "tests/support/mock_gpio.h"
 
 namespace bevloc::firmware {
 namespace {
 
 using drivers::LineAddress;
-using drivers::MockGpio;
 using std::chrono::milliseconds;
+using test::MockGpio;
 
 constexpr Duration kDebounce = milliseconds(150);
 

@@ -3,36 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "can/publisher/solution_frames.h"
+#include "tests/firmware/health/healthy_inputs.h"
 
 namespace bevloc::firmware {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-/// All inputs are present and corrections are accepted.
-HealthInputs healthy() {
-  HealthInputs inputs;
-  inputs.initialized = true;
-  inputs.odometry_age = milliseconds(20);
-  inputs.gnss_age = milliseconds(100);
-  inputs.correction_age = milliseconds(100);
-  inputs.match_age = milliseconds(100);
-  inputs.cameras_present.set();
-  inputs.accepted_in_a_row = 100;
-  inputs.longitudinal_sigma_m = 0.1;
-  inputs.lateral_sigma_m = 0.05;
-  inputs.yaw_sigma_rad = 0.002;
-  return inputs;
-}
-
-Health tracking() {
-  Health health{HealthLimits()};
-  health.update(healthy());
-  health.update(healthy());
-  EXPECT_EQ(health.state(), HealthState::kTracking);
-  return health;
-}
+using test::healthy;
+using test::tracking;
 
 TEST(HealthTest, CamerasOutOfStepDegrade) {
   Health health = tracking();
@@ -41,76 +20,6 @@ TEST(HealthTest, CamerasOutOfStepDegrade) {
   health.update(inputs);
   EXPECT_EQ(health.state(), HealthState::kDegraded);
   EXPECT_EQ(health.why(), WhyMask(Why::kCamerasUnsynchronized));
-}
-
-/// Returns the inputs for a pose that no match has confirmed for `age`, with these protection
-/// levels.
-HealthInputs unmatched(Duration age, double across_m, double heading_rad) {
-  HealthInputs inputs = healthy();
-  inputs.correction_age = age;
-  inputs.protection_level = {0.0, across_m, heading_rad};
-  return inputs;
-}
-
-TEST(HealthTest, LosesAPoseSoonerThatOnlyOdometrySupports) {
-  const HealthLimits limits;
-  const Duration soon = limits.correction_timeout + milliseconds(1);
-  HealthInputs inputs = unmatched(soon, limits.alert_limit.y() + 0.01, 0.0);
-  const auto state_with = [&inputs](bool Verdict::*verdict, bool value) {
-    inputs.verdict = {};
-    inputs.verdict.*verdict = value;
-    Health health = tracking();
-    health.update(inputs);
-    return health.state();
-  };
-  EXPECT_EQ(state_with(&Verdict::gnss_excluded, false), HealthState::kDegraded);
-  EXPECT_EQ(state_with(&Verdict::gnss_contradicts, true), HealthState::kDegraded) << "scatters";
-  EXPECT_EQ(state_with(&Verdict::gnss_excluded, true), HealthState::kLost);
-  EXPECT_EQ(state_with(&Verdict::match_contradicts, true), HealthState::kLost);
-}
-
-TEST(HealthTest, LosesANewPoseSooner) {
-  const double beyond_m = HealthLimits().alert_limit.y() + 0.01;
-  const auto state_after = [beyond_m](Duration correction_age, Duration valid_age) {
-    HealthInputs inputs = unmatched(correction_age, beyond_m, 0.0);
-    inputs.valid_age = valid_age;
-    Health health = tracking();
-    health.update(inputs);
-    return health.state();
-  };
-  EXPECT_EQ(state_after(milliseconds(2001), milliseconds(4999)), HealthState::kLost);
-  EXPECT_EQ(state_after(milliseconds(2000), milliseconds(4999)), HealthState::kDegraded);
-  EXPECT_EQ(state_after(milliseconds(2001), milliseconds(5000)), HealthState::kDegraded);
-}
-
-TEST(HealthTest, KeepsAProtectedPoseAlsoWhileAVoterIsExcluded) {
-  const HealthLimits limits;
-  HealthInputs inputs = unmatched(milliseconds(2900), limits.alert_limit.y() - 0.01, 0.0);
-  inputs.verdict.match_contradicts = true;
-  Health health = tracking();
-  health.update(inputs);
-  EXPECT_EQ(health.state(), HealthState::kDegraded);
-}
-
-TEST(HealthTest, LosesAPoseWithoutMatchesWhoseProtectionLevelIsBeyondTheAlertLimit) {
-  const Eigen::Vector3d limit = HealthLimits().alert_limit;
-  for (const auto& inputs : {unmatched(milliseconds(3001), limit.y() + 0.01, 0.0),
-                             unmatched(milliseconds(3001), 0.0, limit.z() + 0.001)}) {
-    Health health = tracking();
-    health.update(inputs);
-    EXPECT_EQ(health.state(), HealthState::kLost);
-    EXPECT_TRUE(health.why().has(Why::kPoseUncertain));
-  }
-}
-
-TEST(HealthTest, KeepsAPoseWithoutMatchesWithinTheAlertLimits) {
-  const Eigen::Vector3d limit = HealthLimits().alert_limit;
-  for (const auto& inputs : {unmatched(milliseconds(3001), limit.y() - 0.01, limit.z() - 0.001),
-                             unmatched(milliseconds(2999), limit.y() + 0.01, 0.0)}) {
-    Health health = tracking();
-    health.update(inputs);
-    EXPECT_EQ(health.state(), HealthState::kDegraded);
-  }
 }
 
 TEST(HealthTest, StaysInInitWithoutAFirstPose) {

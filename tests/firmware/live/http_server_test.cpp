@@ -13,8 +13,8 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 
+#include "common/file_descriptor.h"
 #include "firmware/live/httplib_header.h"
-#include "firmware/live/socket_stream.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -58,7 +58,7 @@ class RawClient {
   }
 
  private:
-  Socket socket_;
+  FileDescriptor socket_;
   bool connected_ = false;
 };
 

@@ -261,7 +261,7 @@ class PageTest(unittest.TestCase):
 
     def test_it_says_that_too_many_look(self) -> None:
         self.page.evaluate(LATER)
-        full = "As many viewers as bevlocd allows look already"
+        full = "bevlocd has no room for another viewer"
         self.page.wait_for(f"document.getElementById('summary').textContent.includes('{full}')")
 
 

@@ -5,33 +5,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <turbojpeg.h>
+
+#include "common/jpeg.h"
 
 namespace bevloc::firmware {
 namespace {
-
-RgbImage decoded(const std::string& jpeg) {
-  const tjhandle handle = tjInitDecompress();
-  const auto* file = reinterpret_cast<const unsigned char*>(jpeg.data());
-  int width = 0;
-  int height = 0;
-  int subsampling = 0;
-  int colours = 0;
-  EXPECT_EQ(tjDecompressHeader3(handle, file, jpeg.size(), &width, &height, &subsampling, &colours),
-            0);
-  RgbImage image(width, height);
-  EXPECT_EQ(tjDecompress2(handle, file, jpeg.size(), image.row(0), width, 0, height, TJPF_RGB, 0),
-            0);
-  tjDestroy(handle);
-  return image;
-}
 
 /// Checks that the picture of `image` has this colour in its middle.
 void expect_colour(const ImageView& image, int red, int green, int blue) {
   PictureMaker pictures;
   const auto jpeg = pictures.jpeg_of(image);
   ASSERT_TRUE(jpeg) << jpeg.error().message;
-  const RgbImage picture = decoded(*jpeg);
+  const RgbImage picture = decode_jpeg(*jpeg, "picture").value();
   const uint8_t* const middle = picture.row(picture.height / 2) + 3 * (picture.width / 2);
   EXPECT_NEAR(middle[0], red, 6);
   EXPECT_NEAR(middle[1], green, 6);
@@ -53,7 +38,7 @@ TEST(PictureMaker, MakesLargeImagesSmaller) {
   PictureMaker pictures;
   const auto jpeg = pictures.jpeg_of(image.view());
   ASSERT_TRUE(jpeg) << jpeg.error().message;
-  const RgbImage picture = decoded(*jpeg);
+  const RgbImage picture = decode_jpeg(*jpeg, "picture").value();
   EXPECT_EQ(picture.width, 640);
   EXPECT_EQ(picture.height, 360);
 }

@@ -2,6 +2,7 @@
 #include <deque>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -11,7 +12,6 @@
 #include "can/bus/mock_bus.h"
 #include "can/bus/send_gate.h"
 #include "can/publisher/pose_publisher.h"
-#include "drivers/mock/mock_gpio.h"
 #include "evaluation/drive/pose_reader.h"
 #include "firmware/runtime/runner.h"
 #include "firmware/runtime/supervisor.h"
@@ -19,6 +19,7 @@
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_loader.h"
 #include "tests/firmware/runtime/fake_manager.h"
+#include "tests/support/mock_gpio.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -221,9 +222,9 @@ class SupervisionTest : public testing::Test {
 /// not held has beaten.
 TEST_F(SupervisionTest, EveryThreadThatStopsIsNamedAndStopsTheFeed) {
   drivers::MonotonicClock machine;
-  drivers::MockGpio gpio({"trigger"}, machine);
+  test::MockGpio gpio({"trigger"}, machine);
   const auto trigger =
-      TriggerThread::start({{drivers::MockGpio::kChip, "trigger"}, {}}, gpio, clock_, realtime_)
+      TriggerThread::start({{test::MockGpio::kChip, "trigger"}, {}}, gpio, clock_, realtime_)
           .value();
   std::map<std::string, const Heartbeat*> threads{{"vision", &appliance_->heartbeats().vision},
                                                   {"can-in", &appliance_->heartbeats().can_in},
@@ -288,6 +289,11 @@ TEST_F(SupervisionTest, TheLastMessageSaysLost) {
     run();
     EXPECT_EQ(state_on_wire, HealthState::kLost);
   }
+}
+
+TEST_F(SupervisionTest, AnExceptionOfTheSupervisorEndsTheThreadsAndArrives) {
+  const auto fails = [](Time) -> bool { throw std::runtime_error("supervisor"); };
+  EXPECT_THROW(run_threads(*appliance_, realtime_, nullptr, fails), std::runtime_error);
 }
 
 using SupervisionDeathTest = SupervisionTest;

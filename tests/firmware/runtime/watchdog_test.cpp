@@ -4,14 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/mock/mock_gpio.h"
 #include "tests/firmware/runtime/fake_manager.h"
+#include "tests/support/mock_gpio.h"
 
 namespace bevloc::firmware {
 namespace {
 
-using drivers::MockGpio;
 using std::chrono::milliseconds;
+using test::MockGpio;
 
 class WatchdogTest : public testing::Test {
  protected:

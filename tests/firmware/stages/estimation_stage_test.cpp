@@ -2,92 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "can/bus/mock_bus.h"
 #include "can/messages/localizer_messages.h"
-#include "evaluation/drive/pose_reader.h"
 #include "pipeline/map/map_check.h"
+#include "tests/firmware/stages/estimation_stage_fixture.h"
 
 namespace bevloc::firmware {
 namespace {
 
 using std::chrono::milliseconds;
-
-constexpr can::GeodeticPosition kOrigin{49.0, 8.4};
-constexpr double kSpeed_mps = 10.0;
-constexpr double kNoise_mps = 0.01;
-
-/// A vehicle that drives east at constant speed. GNSS is one metre too far north. The vision
-/// reports contain the truth, or an error that the test sets.
-class EstimationStageTest : public testing::Test {
- protected:
-  Se2 truth_at(Time time) const { return {kSpeed_mps * to_seconds(time.time_since_epoch()), 0, 0}; }
-
-  void run(Duration duration) {
-    for (const Time end = now_ + duration; now_ < end; now_ += milliseconds(10)) {
-      if (now_.time_since_epoch() % milliseconds(20) == Duration::zero() && odometry_) {
-        // Real sensors never repeat their values.
-        const double noise_mps = now_.time_since_epoch() % milliseconds(40) == Duration::zero()
-                                     ? kNoise_mps
-                                     : -kNoise_mps;
-        samples_.push(OdometrySample{now_, kSpeed_mps + noise_mps, 0.0});
-      }
-      if (now_.time_since_epoch() % milliseconds(100) == Duration::zero()) {
-        const Se2 truth = truth_at(now_);
-        samples_.push(GnssSample{now_, truth.x_m, truth.y_m + gnss_north_m_, gnss_sigma_m_,
-                                 gnss_sigma_m_, GnssSample::Yaw{0.0, 0.02}});
-        const bool is_due = now_.time_since_epoch() % report_period_ == Duration::zero();
-        if (vision_ && is_due) push_report(now_ - milliseconds(40));
-      }
-      stage_.tick(now_);
-      while (const auto received = listener_->receive()) {
-        if (const auto pose = reader_.accept(*received)) latest_ = pose;
-      }
-    }
-  }
-
-  void push_report(Time frame_time) {
-    VisionReport report;
-    report.frame_time = frame_time;
-    report.present.set();
-    report.skipped = skipped_;
-    report.stamps_jumped = stamps_jumped_;
-    report.had_prior = true;
-    report.map_nearby = true;
-    report.prior = truth_at(frame_time) * Se2{0.5, 0.4, 0.01};
-    report.match.evidence = Evidence::kGood;
-    report.match.score = 0.33;
-    report.match.axis_score.setConstant(0.33);
-    report.match.correction =
-        correction_between(report.prior, truth_at(frame_time)) * vision_error_;
-    report.match.covariance = Eigen::Vector3d(0.01, 0.0025, 1e-5).asDiagonal().toDenseMatrix();
-    reports_.push(report);
-  }
-
-  uint64_t corrections(TrackerUpdate outcome) const {
-    return stage_.counters().corrections[static_cast<size_t>(outcome)];
-  }
-
-  can::MockWire wire_;
-  std::unique_ptr<can::Bus> bus_ = wire_.connect();
-  std::unique_ptr<can::Bus> listener_ = wire_.connect();
-  can::PosePublisher publisher_{*bus_, {.map_origin = kOrigin}};
-  VehicleQueue samples_{256};
-  VisionQueue reports_{16};
-  PredictionQueue predictions_{128};
-  EstimationStage stage_{TrackerParameters(), HealthLimits(), 7, publisher_, samples_, reports_,
-                         predictions_};
-  evaluation::PoseReader reader_{{}, kOrigin};
-  Time now_{milliseconds(1000)};
-  Se2 vision_error_;
-  double gnss_north_m_ = 1.0;
-  double gnss_sigma_m_ = 1.0;
-  bool odometry_ = true;
-  bool vision_ = true;
-  Duration report_period_ = milliseconds(100);
-  bool skipped_ = false;
-  bool stamps_jumped_ = false;
-  std::optional<evaluation::BusPose> latest_;
-};
+using test::EstimationStageTest;
 
 TEST_F(EstimationStageTest, CorrectsTheGnssOffsetAndSendsTheTruth) {
   run(milliseconds(5000));
@@ -96,52 +19,6 @@ TEST_F(EstimationStageTest, CorrectsTheGnssOffsetAndSendsTheTruth) {
   const Se2 error = correction_between(truth_at(latest_->received), latest_->map_from_vehicle);
   EXPECT_NEAR(error.x_m, 0.0, 0.05);
   EXPECT_NEAR(error.y_m, 0.0, 0.05);
-}
-
-TEST_F(EstimationStageTest, AClockGapMeansLostUntilThePoseIsFoundAgain) {
-  run(milliseconds(5000));
-  ASSERT_EQ(stage_.counters().state, HealthState::kTracking);
-  now_ += std::chrono::seconds(10);
-  samples_.push(GnssSample{now_ - std::chrono::seconds(10), 0.0, 0.0, 1.0, 1.0, {}});
-  stage_.note_clock_gap();
-  latest_.reset();
-  run(milliseconds(10));
-  EXPECT_EQ(stage_.counters().state, HealthState::kLost);
-  EXPECT_TRUE(WhyMask::from_bits(stage_.counters().why).has(Why::kClockGap));
-  EXPECT_EQ(stage_.counters().clock_gaps, 1U);
-  run(milliseconds(200));
-  EXPECT_FALSE(latest_) << "no valid pose";
-  run(milliseconds(5000));
-  EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
-  EXPECT_FALSE(WhyMask::from_bits(stage_.counters().why).has(Why::kClockGap));
-}
-
-/// Only GNSS supports a new pose, and its sigma may be too small.
-TEST_F(EstimationStageTest, ThePoseAfterAClockGapIsNew) {
-  run(milliseconds(5000));
-  now_ += std::chrono::seconds(10);
-  stage_.note_clock_gap();
-  vision_ = false;
-  gnss_sigma_m_ = 0.1;
-  run(milliseconds(300));
-  std::optional<Prediction> latest;
-  while (const auto prediction = predictions_.pop(Duration::zero())) latest = prediction;
-  ASSERT_TRUE(latest);
-  EXPECT_GT(latest->pose.covariance(1, 1), 0.5);
-}
-
-TEST_F(EstimationStageTest, TellsTheSourceOfTime) {
-  std::vector<can::PoseReport> reports;
-  stage_.observe_reports([&](const can::PoseReport& report) { reports.push_back(report); });
-  run(milliseconds(10));
-  stage_.note_clock(
-      {.source = can::TimeSource::kPtp, .utc_offset = milliseconds(7), .utc_error = {}});
-  run(milliseconds(10));
-  ASSERT_EQ(reports.size(), 2U);
-  EXPECT_EQ(reports[0].status.time_source, can::TimeSource::kFreeRunning);
-  EXPECT_EQ(reports[1].status.time_source, can::TimeSource::kPtp);
-  EXPECT_EQ(reports[1].clock.utc_offset, milliseconds(7));
-  EXPECT_EQ(stage_.counters().time_source, can::TimeSource::kPtp);
 }
 
 TEST_F(EstimationStageTest, SendsNoPoseBeforeVisionConfirmsIt) {
@@ -201,17 +78,14 @@ TEST_F(EstimationStageTest, APoseThatStartedAgainNeedsNewMatches) {
             static_cast<uint64_t>(HealthLimits().corrections_to_track));
   gnss_north_m_ = 8.0;  // refutes the pose
   vision_ = false;
-  const auto has_started_again = [this] {
-    return WhyMask::from_bits(stage_.counters().why).has(Why::kNoInitialPose);
-  };
+  const auto has_started_again = [this] { return why().has(Why::kNoInitialPose); };
   for (int i = 0; i < 500 && !has_started_again(); ++i) run(milliseconds(10));
   ASSERT_TRUE(has_started_again());
   gnss_north_m_ = 1.0;
   run(milliseconds(300));
-  const auto why = WhyMask::from_bits(stage_.counters().why);
-  EXPECT_FALSE(why.has(Why::kNoInitialPose));
-  EXPECT_TRUE(why.has(Why::kMatchUncertain));
-  EXPECT_TRUE(why.has(Why::kPoseStale));
+  EXPECT_FALSE(why().has(Why::kNoInitialPose));
+  EXPECT_TRUE(why().has(Why::kMatchUncertain));
+  EXPECT_TRUE(why().has(Why::kPoseStale));
 }
 
 TEST_F(EstimationStageTest, ReportsThatVisionSkipsFramesets) {
@@ -230,40 +104,12 @@ TEST_F(EstimationStageTest, LosesThePoseWhileTheStampsAreWrong) {
   stamps_jumped_ = true;
   run(milliseconds(200));
   latest_.reset();
-  EXPECT_TRUE(WhyMask::from_bits(stage_.counters().why).has(Why::kCalibrationFault));
+  EXPECT_TRUE(why().has(Why::kCalibrationFault));
   run(milliseconds(5000));
   EXPECT_FALSE(latest_) << "no valid pose";
   stamps_jumped_ = false;
   run(milliseconds(5000));
   EXPECT_EQ(stage_.counters().state, HealthState::kTracking);
-}
-
-TEST_F(EstimationStageTest, StampsAreStillWrongAfterAClockGap) {
-  run(milliseconds(5000));
-  stamps_jumped_ = true;
-  run(milliseconds(200));
-  now_ += std::chrono::seconds(10);
-  stage_.note_clock_gap();
-  latest_.reset();
-  run(milliseconds(5000));
-  EXPECT_FALSE(latest_) << "no valid pose";
-  EXPECT_TRUE(WhyMask::from_bits(stage_.counters().why).has(Why::kCalibrationFault));
-}
-
-TEST_F(EstimationStageTest, AMapThatLiesOffGnssDoesSoAfterAClockGap) {
-  const auto why = [this] { return WhyMask::from_bits(stage_.counters().why); };
-  run(milliseconds(5000));
-  gnss_north_m_ = 3.0;
-  for (int second = 0; second < 600 && !why().has(Why::kMapFault); ++second) {
-    run(milliseconds(1000));
-  }
-  ASSERT_TRUE(why().has(Why::kMapFault));
-  now_ += std::chrono::seconds(10);
-  stage_.note_clock_gap();
-  latest_.reset();
-  run(milliseconds(10'000));
-  EXPECT_FALSE(latest_) << "no valid pose";
-  EXPECT_TRUE(why().has(Why::kMapFault));
 }
 
 TEST_F(EstimationStageTest, ReportsAllCamerasMissingWithoutFramesets) {
@@ -305,9 +151,8 @@ TEST_F(EstimationStageTest, GnssIsThereWhileOdometryIsMissing) {
   run(milliseconds(5000));
   odometry_ = false;
   run(milliseconds(3000));
-  const auto why = WhyMask::from_bits(stage_.counters().why);
-  EXPECT_TRUE(why.has(Why::kOdometryMissing));
-  EXPECT_FALSE(why.has(Why::kGnssMissing));
+  EXPECT_TRUE(why().has(Why::kOdometryMissing));
+  EXPECT_FALSE(why().has(Why::kGnssMissing));
 }
 
 /// Nine good matches, a time without any, and one more do not make ten.

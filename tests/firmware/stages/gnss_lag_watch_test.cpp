@@ -82,6 +82,29 @@ TEST_F(GnssLagWatchTest, ForgetsWhatWasBeforeAReset) {
   EXPECT_FALSE(watch_.contradicts());
 }
 
+TEST_F(GnssLagWatchTest, HeadingsAreStillOldAfterAGap) {
+  drive(30.0, 0.5);
+  ASSERT_TRUE(watch_.contradicts());
+  watch_.note_gap();
+  time_s_ += 10.0;
+  EXPECT_TRUE(watch_.contradicts());
+  EXPECT_NEAR(watch_.lag_ms(), 500, 100);
+  drive(2.0, 0.5);
+  EXPECT_TRUE(watch_.contradicts());
+  drive(120.0, 0.0);
+  EXPECT_FALSE(watch_.contradicts()) << "bends show that they are in time again";
+}
+
+/// The yaw rates before the gap say nothing about a heading after it.
+TEST_F(GnssLagWatchTest, AGapBringsNoContradiction) {
+  drive(30.0, 0.0);
+  watch_.note_gap();
+  EXPECT_FALSE(watch_.contradicts());
+  time_s_ += 10.0;
+  drive(60.0, 0.0);
+  EXPECT_FALSE(watch_.contradicts());
+}
+
 TEST_F(GnssLagWatchTest, AHeadingThatSeemsNewerIsNoLag) {
   drive(60.0, -0.3);
   EXPECT_FALSE(watch_.contradicts());

@@ -57,6 +57,7 @@ TEST_F(ErrorLogTest, LogsEachCauseOfItsOwn) {
   snapshot_.cameras[2].unreadable = 1;
   snapshot_.cameras[2].driver.damaged = 1;
   snapshot_.cameras[3].synchronizer.late = 1;
+  snapshot_.cameras[3].synchronizer.overflow = 1;
   snapshot_.vehicle_input.repeated = 1;
   snapshot_.vehicle_input.slow_odometry = 1;
   snapshot_.vehicle_input.contradicting_wheels = 1;
@@ -70,10 +71,11 @@ TEST_F(ErrorLogTest, LogsEachCauseOfItsOwn) {
   snapshot_.queue_drops = {.samples = 1, .reports = 1, .predictions = 1};
   note();
   note();
-  EXPECT_EQ(lines(), 16);
+  EXPECT_EQ(lines(), 17);
   for (const char* text :
        {"camera front: unreadable image", "camera front_right: unreadable image",
         "camera front_right: damaged frame", "camera back_left: frame came after its frameset",
+        "camera back_left: frame dropped because newer ones filled its queue",
         "CAN in: found a repeated counter", "tracker: odometry refused: beyond",
         "tracker: GNSS refused: not a number", "CAN in: frames lost",
         "CAN in: found odometry less often", "CAN in: found wheel speeds that contradict",

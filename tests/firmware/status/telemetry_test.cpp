@@ -1,8 +1,6 @@
 // Tests health check, metrics, status and latency histogram.
 #include "firmware/status/telemetry.h"
 
-#include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -13,6 +11,7 @@
 
 #include "firmware/status/metrics.h"
 #include "firmware/status/status_json.h"
+#include "tests/support/text.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -271,12 +270,6 @@ std::set<std::string> metric_names_in(const std::string& text) {
   return names;
 }
 
-std::string text_of_file(const std::string& name) {
-  std::ifstream file(std::filesystem::path(BEVLOC_SOURCE_DIR) / name);
-  EXPECT_TRUE(file) << name;
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 /// The metrics of an appliance that has every device.
 std::string all_metrics() {
   Telemetry telemetry = running(HealthState::kTracking);
@@ -288,7 +281,8 @@ std::string all_metrics() {
 }
 
 TEST(Metrics, TheDashboardNamesOnlyExistingOnes) {
-  const auto dashboard = nlohmann::json::parse(text_of_file("docs/grafana/bevloc.json"));
+  const auto dashboard =
+      nlohmann::json::parse(test::read_text(BEVLOC_SOURCE_DIR "/docs/grafana/bevloc.json"));
   const std::set<std::string> existing = metric_names_in(all_metrics());
   size_t queries = 0;
   for (const auto& panel : dashboard["panels"]) {
@@ -303,7 +297,8 @@ TEST(Metrics, TheDashboardNamesOnlyExistingOnes) {
 }
 
 TEST(Metrics, ThePageListsEachOne) {
-  const std::set<std::string> listed = metric_names_in(text_of_file("docs/live.md"));
+  const std::set<std::string> listed =
+      metric_names_in(test::read_text(BEVLOC_SOURCE_DIR "/docs/live.md"));
   std::istringstream lines(all_metrics());
   int types = 0;
   for (std::string word, name; lines >> word;) {

@@ -108,6 +108,36 @@ TEST(Localizer, TheCheckNeedsNoWideRange) {
   EXPECT_TRUE(checked) << checked.error().message;
 }
 
+/// Checks a localizer that tracks and acquires with these steps along x and y.
+void expect_check_passes(SolverKind kind, double tracking_step_m, double acquiring_step_m) {
+  const auto with_step = [](double step_m) {
+    const HypothesisAxis axis{4.0 * step_m, step_m};
+    return HypothesisGrid{axis, axis, {radians(4.0), radians(1.0)}};
+  };
+  LocalizerOptions options;
+  options.solver = kind;
+  options.tracking = with_step(tracking_step_m);
+  options.acquiring = with_step(acquiring_step_m);
+  const HdMap map;
+  const MapIndex index(map);
+  const auto localizer = Localizer::create(sim::nominal_rig(), index, kModel, options);
+  ASSERT_TRUE(localizer) << localizer.error().message;
+  const Status checked = (*localizer)->check();
+  EXPECT_TRUE(checked) << name_of(kind) << ", steps of " << tracking_step_m << " m and "
+                       << acquiring_step_m << " m: " << checked.error().message;
+}
+
+/// The configuration accepts steps up to a quarter of the range, which is at most max_shift_m().
+TEST(Localizer, TheCheckPassesWithTheCoarsestStepsForEverySolver) {
+  constexpr double kCoarsestStep_m = max_shift_m(kFeatureGrid) / 4.0;
+  for (const SolverKind kind : all_solver_kinds()) expect_check_passes(kind, 1.0, kCoarsestStep_m);
+}
+
+/// The nearest hypotheses are a third of a cell and half a cell from a whole number of cells.
+TEST(Localizer, TheCheckPassesWithHypothesesBetweenTheCells) {
+  expect_check_passes(LocalizerOptions().solver, 0.4, 0.9);
+}
+
 TEST(Localizer, TheCheckFindsDamagedWeights) {
   std::string bytes = read_file(kModel).value();
   for (size_t i = 0; i < 4096; ++i) {

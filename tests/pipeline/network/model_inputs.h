@@ -4,12 +4,11 @@
 
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "common/files.h"
 #include "pipeline/network/view/view_table.h"
 
 namespace bevloc::test {
@@ -60,8 +59,7 @@ inline std::string fixture(const std::string& file) {
 }
 
 inline std::string read_bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  return read_file(path).value();
 }
 
 /// The outputs that numpy computed for a model.

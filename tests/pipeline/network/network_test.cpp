@@ -13,6 +13,7 @@
 #include "evaluation/bench/allocation_count.h"
 #include "tests/pipeline/network/model_inputs.h"
 #include "tests/pipeline/network/network_under_test.h"
+#include "tests/support/root_mean_square.h"
 
 namespace bevloc {
 namespace {
@@ -28,16 +29,10 @@ std::vector<float> all_outputs(const Network& network, size_t stride = 1) {
   return values;
 }
 
-double root_mean_square(const std::vector<float>& values) {
-  double sum = 0.0;
-  for (const float value : values) sum += static_cast<double>(value) * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 double rms_difference(const std::vector<float>& a, const std::vector<float>& b) {
   std::vector<float> difference(a);
   for (size_t i = 0; i < b.size(); ++i) difference[i] -= b[i];
-  return root_mean_square(difference);
+  return test::root_mean_square(difference);
 }
 
 TEST(Network, Int8AgreesWithNumpy) {
@@ -46,7 +41,7 @@ TEST(Network, Int8AgreesWithNumpy) {
   const std::vector<float> found = all_outputs(*network, kStride);
   const std::vector<float> expected = test::expected_values("tiny_network_int8");
   ASSERT_EQ(found.size(), expected.size());
-  EXPECT_GT(root_mean_square(expected), 0.1);
+  EXPECT_GT(test::root_mean_square(expected), 0.1);
   // The scales are not powers of two. About one sum in 100,000 rounds differently in float32 than
   // in float64. It changes its element by one step and, through the view transform, many outputs a
   // little.
@@ -54,7 +49,7 @@ TEST(Network, Int8AgreesWithNumpy) {
     return std::abs(found[i] - expected[i]) < 1e-5F;
   });
   EXPECT_GT(same, 0.8 * static_cast<double>(found.size()));
-  EXPECT_LT(rms_difference(found, expected), 3e-3 * root_mean_square(expected));
+  EXPECT_LT(rms_difference(found, expected), 3e-3 * test::root_mean_square(expected));
 }
 
 TEST(Network, FloatAgreesWithNumpy) {

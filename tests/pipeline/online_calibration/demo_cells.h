@@ -7,6 +7,7 @@
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/online_calibration/online_calibration.h"
 #include "pipeline/preprocessing/network_camera.h"
+#include "pipeline/solver/feature_warp.h"
 #include "pipeline/solver/standardise.h"
 
 namespace bevloc {
@@ -31,7 +32,8 @@ class DemoCells {
       : rig_(demo_network_rig()),
         view_(make_view_table(rig_, CameraMask().set(), kFeatureGrid)),
         bev_(kFeatureGrid, kChannels, HypothesisGrid()),
-        map_(kFeatureGrid, kChannels, HypothesisGrid()) {
+        map_(kFeatureGrid, kChannels, HypothesisGrid()),
+        moved_(static_cast<size_t>(kFeatureGrid.cells()) * map_.lanes()) {
     show(ExtrinsicErrors::Zero());
   }
 
@@ -67,9 +69,10 @@ class DemoCells {
     bev_.assign(bev);
     standardise(map_);
     standardise(bev_);
+    warp_all(bev_, Se2(), moved_.data(), kFeatureGrid.cols * bev_.lanes());
   }
 
-  MatchedCells match() const { return {bev_, map_, view_, rig_, Se2()}; }
+  MatchedCells match() const { return {moved_, map_, view_, rig_, Se2()}; }
 
  private:
   /// A sum of waves of 6 to 12 m, different in each channel.
@@ -89,6 +92,7 @@ class DemoCells {
   ViewTable view_;
   CellFeatures bev_;
   CellFeatures map_;
+  LaneBuffer moved_;
 };
 
 }  // namespace bevloc

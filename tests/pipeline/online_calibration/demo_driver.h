@@ -16,7 +16,7 @@ inline MatchResult clear_match() {
 class DemoDriver {
  public:
   explicit DemoDriver(const OnlineCalibrationOptions& options = {})
-      : calibration_(cells_.rig(), kFeatureGrid, DemoCells::kChannels, options) {}
+      : calibration_(cells_.rig(), kFeatureGrid, options) {}
 
   void drive(const ExtrinsicErrors& errors, int framesets, CameraMask blind = {}) {
     cells_.show(errors - calibration_.used_errors(), blind);

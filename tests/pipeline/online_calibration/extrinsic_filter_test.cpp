@@ -17,7 +17,7 @@ struct Learned {
 /// Shows the road with `errors` many times, and applies what was learned each time.
 Learned learn(const ExtrinsicErrors& errors, int matches = 25) {
   DemoCells cells;
-  ExtrinsicSums sums(kFeatureGrid, DemoCells::kChannels);
+  ExtrinsicSums sums(kFeatureGrid);
   ExtrinsicFilter filter(cells.rig());
   ExtrinsicInformation information;
   for (int i = 0; i < matches; ++i) {

@@ -42,7 +42,8 @@ TEST(OnlineCalibration, LearnsOnlyFromClearMatchesWhileItDrivesAndTracks) {
 TEST(OnlineCalibration, NamesTheCameraThatIsTurnedBeyondTheBounds) {
   DemoDriver driver;
   driver.drive(error_of(4, 0, radians(1.2)), 600);
-  EXPECT_EQ(driver.calibration().beyond_bounds(), CameraMask().set(4));
+  EXPECT_EQ(driver.calibration().faults(), CameraMask().set(4));
+  EXPECT_TRUE(driver.calibration().contradicting().none()) << "its errors alone are the fault";
   EXPECT_EQ(driver.calibration().used_errors(), ExtrinsicErrors::Zero())
       << "the camera has pulled the estimates of the others";
 }
@@ -63,7 +64,7 @@ TEST(OnlineCalibration, LearnsTheTurnOfAllCamerasFromTheDirectionOfMotion) {
 }
 
 TEST(OnlineCalibration, RestoresWhatIsWithinTheBounds) {
-  OnlineCalibration calibration(demo_network_rig(), kFeatureGrid, DemoCells::kChannels, {});
+  OnlineCalibration calibration(demo_network_rig(), kFeatureGrid, {});
   const ExtrinsicCovariance covariance = 1e-6 * ExtrinsicCovariance::Identity();
   EXPECT_FALSE(calibration.restore(error_of(1, 0, radians(0.7)), covariance));
   EXPECT_EQ(calibration.used_errors(), ExtrinsicErrors::Zero());

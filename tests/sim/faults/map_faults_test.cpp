@@ -130,7 +130,19 @@ TEST(DriveClock, AFaultOfNoLengthDoesNotHappen) {
   const std::vector faults = {suspend, gap};
   EXPECT_DOUBLE_EQ(drive_time_s(11.0, faults), 11.0);
   EXPECT_FALSE(is_in_clock_gap(21.0, faults));
+  EXPECT_DOUBLE_EQ(clock_gaps_end_s(21.0, faults), 0.0);
   EXPECT_DOUBLE_EQ(added_time_s(faults), 0.0);
+}
+
+TEST(DriveClock, TheLastGapThatHasBegunEndsLast) {
+  Fault early = make_fault(FaultKind::kClockGap, 10.0, 10.01);
+  early.amounts.gap_s = 5.0;
+  Fault late = make_fault(FaultKind::kClockGap, 12.0);
+  late.amounts.gap_s = 8.0;
+  const std::vector faults = {late, early};
+  EXPECT_DOUBLE_EQ(clock_gaps_end_s(9.99, faults), 0.0);
+  EXPECT_DOUBLE_EQ(clock_gaps_end_s(11.0, faults), 15.0);
+  EXPECT_DOUBLE_EQ(clock_gaps_end_s(12.0, faults), 20.0);
 }
 
 TEST(DriveClock, AFaultAfterASuspensionBeginsLaterInTheDrive) {

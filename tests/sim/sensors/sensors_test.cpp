@@ -5,6 +5,7 @@
 #include "sim/sensors/gnss.h"
 #include "sim/sensors/odometry.h"
 #include "sim/world/world_generator.h"
+#include "tests/support/root_mean_square.h"
 
 namespace bevloc::sim {
 namespace {
@@ -15,12 +16,6 @@ double deviation(const std::vector<double>& values) {
   double variance = 0.0;
   for (const double v : values) variance += (v - mean) * (v - mean);
   return std::sqrt(variance / static_cast<double>(values.size()));
-}
-
-double root_mean_square(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v * v;
-  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 class Sensors : public testing::Test {
@@ -68,8 +63,8 @@ TEST_F(Sensors, GnssErrorsHaveTheDocumentedSize) {
     }
     white.push_back((error_at(101) - error_at(100)).x());
   }
-  EXPECT_NEAR(root_mean_square(position), std::hypot(1.0, 0.25), 0.1);
-  EXPECT_NEAR(degrees(root_mean_square(heading)), std::hypot(1.0, 0.3), 0.1);
+  EXPECT_NEAR(test::root_mean_square(position), std::hypot(1.0, 0.25), 0.1);
+  EXPECT_NEAR(degrees(test::root_mean_square(heading)), std::hypot(1.0, 0.3), 0.1);
   // Consecutive readings differ by the white noise and a small drift.
   EXPECT_NEAR(deviation(white), std::hypot(0.25 * std::sqrt(2.0), 0.07), 0.05);
   EXPECT_NEAR(claimed_position, std::hypot(1.0, 0.25), 1e-9);

@@ -8,10 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include <pugixml.hpp>
-
 #include "pipeline/map/map_check.h"
 #include "pipeline/map/text_lines.h"
+#include "pipeline/map/xml_root.h"
 
 namespace bevloc::opendrive {
 namespace {
@@ -21,8 +20,8 @@ constexpr double kLargestNumber = 1e9;
 constexpr double kMostCurvature = 10.0;
 /// A negative length counts as 0 if it is above minus this value.
 constexpr double kRounding_m = 1e-6;
-/// This is more lanes than any file has on the other side of single-sided lane sections. They are
-/// made, so they would fill the memory.
+/// Limit of the lanes that complete_sides() adds to single-sided sections. It is more than any file
+/// needs. Without a limit, the added lanes could fill the memory.
 constexpr size_t kMostOtherLanes = 1'000'000;
 
 double mps_from(std::string_view unit) {
@@ -31,7 +30,7 @@ double mps_from(std::string_view unit) {
   return 1.0;
 }
 
-/// A number beyond the range of double, as 0 if it is too small and as infinity if it is too large.
+/// Reads a number beyond the range of double: 0 if it is too small, infinity if it is too large.
 double wide_number(std::string_view text) {
   long double value = std::numeric_limits<long double>::infinity();
   std::from_chars(text.data(), text.data() + text.size(), value);
@@ -57,16 +56,16 @@ class DocumentReader {
     return std::move(document_);
   }
 
+ private:
   int line_of(const pugi::xml_node& node) const { return lines_.line_at(node.offset_debug()); }
 
- private:
   void reject(const pugi::xml_node& node, std::string_view found, std::string_view wanted) {
     if (error_) return;
     error_ = Error{fmt::format("{}:{}: <{}>: found {}, wanted {}", document_.file, line_of(node),
                                node.name(), found, wanted)};
   }
 
-  /// The number of an attribute, or `fallback`, if there is one, where the attribute is missing.
+  /// The number of an attribute. If the attribute is missing and there is a `fallback`, returns it.
   double number(const pugi::xml_node& node, const char* name, double limit = kLargestNumber,
                 std::optional<double> fallback = std::nullopt) {
     std::string_view text = node.attribute(name).value();
@@ -145,7 +144,7 @@ class DocumentReader {
                     number(param, "dV")};
       geometry.is_normalized = std::strcmp(param.attribute("pRange").value(), "arcLength") != 0;
     } else {
-      reject(node, "none of them", "line, arc, spiral, poly3 or paramPoly3");
+      reject(node, "no known kind of geometry", "line, arc, spiral, poly3 or paramPoly3");
     }
     place_knots(geometry);
     return geometry;
@@ -329,19 +328,9 @@ class DocumentReader {
 
 Result<Document> parse_document(std::string_view text, std::string file) {
   pugi::xml_document xml;
-  const pugi::xml_parse_result parsed =
-      xml.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
-  if (!parsed) {
-    return fail("{}:{}: found text that is not XML ({}), wanted OpenDRIVE XML", file,
-                LineFinder(text).line_at(parsed.offset), parsed.description());
-  }
-  DocumentReader reader(text, file);
-  const pugi::xml_node root = xml.document_element();
-  if (std::strcmp(root.name(), "OpenDRIVE") != 0) {
-    return fail("{}:{}: found <{}> as the outermost element, wanted <OpenDRIVE>", file,
-                reader.line_of(root), root.name());
-  }
-  return reader.read(root);
+  const auto root = parse_xml(text, file, {.name = "OpenDRIVE", .root = "OpenDRIVE"}, xml);
+  if (!root) return tl::unexpected(root.error());
+  return DocumentReader(text, std::move(file)).read(*root);
 }
 
 }  // namespace bevloc::opendrive

@@ -176,7 +176,7 @@ class OpendriveReader {
         projection =
             moved_projection(std::move(*read), document_.offset, document_.offset_heading_rad);
       } else {
-        builder_.remark("the geoReference is longlat, which does not say where metres lie");
+        builder_.remark("the geoReference is longlat, which does not define a plane in metres");
       }
     }
     return builder_.finish(name, std::move(projection));

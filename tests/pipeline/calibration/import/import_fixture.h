@@ -9,19 +9,14 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/calibration/import/import_rig.h"
-#include "pipeline/calibration/rig_yaml.h"
+#include "tests/support/demo_rig.h"
+#include "tests/support/text.h"
 
 namespace bevloc::test {
 
-inline Rig base_rig() {
-  auto rig = read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml");
-  EXPECT_TRUE(rig);
-  return *rig;
-}
-
 inline RigImportOptions with_base() {
   RigImportOptions options;
-  options.base = base_rig();
+  options.base = demo_rig();
   return options;
 }
 
@@ -49,12 +44,6 @@ rectification_matrix:
   cols: 3
   data: [1, 0, 0, 0, 1, 0, 0, 0, 1]
 )";
-
-inline std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
-}
 
 /// A chain in which cam0 has the IMU and cam1 hangs on cam0.
 inline std::string kalibr_chain(const Se3& camera0_from_imu, const Se3& camera1_from_camera0) {

@@ -18,7 +18,7 @@ RigImportOptions with_nose_as_front() {
 
 TEST(ImportRefusals, ANameOfTheFilesIsNotOneOfOurs) {
   // The chain's own "front" is our front_left, and our front is a camera of another file.
-  const Rig base = base_rig();
+  const Rig base = demo_rig();
   const Se3 vehicle_from_left = base.cameras[0].vehicle_from_camera;
   const Se3 vehicle_from_back_left = base.cameras[3].vehicle_from_camera;
   const std::string chain = kalibr_chain({}, vehicle_from_back_left.inverse() * vehicle_from_left);
@@ -35,7 +35,7 @@ TEST(ImportRefusals, ANameOfTheFilesIsNotOneOfOurs) {
 }
 
 TEST(ImportRefusals, ATopicMayBeCalledAsAFrame) {
-  const Rig base = base_rig();
+  const Rig base = demo_rig();
   const std::string chain =
       replaced(kalibr_chain({}, base.cameras[2].vehicle_from_camera.inverse() *
                                     base.cameras[1].vehicle_from_camera),
@@ -132,7 +132,7 @@ TEST(ImportRefusals, ATransformToACameraThatIsNotInTheChain) {
 }
 
 TEST(ImportRefusals, TheOrderOfAChainInTheFileDoesNotMatter) {
-  const Rig base = base_rig();
+  const Rig base = demo_rig();
   const std::string chain = kalibr_chain(
       {}, base.cameras[2].vehicle_from_camera.inverse() * base.cameras[1].vehicle_from_camera);
   const size_t second = chain.find("cam1:");

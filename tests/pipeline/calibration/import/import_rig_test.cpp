@@ -68,7 +68,7 @@ TEST(ImportRig, CameraInfoOfRosProjectsAsOpenCv) {
   expect_projects_as(front.intrinsics, {900.5, 901.5, 640.25, 361.75},
                      {-0.12, 0.03, 0.001, -0.002});
   // What the file lacks comes from the base.
-  const Rig base = base_rig();
+  const Rig base = demo_rig();
   EXPECT_TRUE(front.vehicle_from_camera.rotation.isApprox(
       base.cameras[kFront].vehicle_from_camera.rotation, 1e-6));
   EXPECT_EQ(imported->rig.cameras[4].intrinsics, base.cameras[4].intrinsics);
@@ -153,7 +153,7 @@ TEST(ImportRig, TheOwnBodyComesFromTheBase) {
 }
 
 TEST(ImportRig, TheChainOfKalibrEndsAtTheVehicle) {
-  const Rig base = base_rig();
+  const Rig base = demo_rig();
   const Se3 vehicle_from_front = base.cameras[1].vehicle_from_camera;
   const Se3 vehicle_from_right = base.cameras[2].vehicle_from_camera;
   const Se3 vehicle_from_imu{
@@ -237,7 +237,7 @@ TEST(ImportRig, NuScenesHasThePoseOfTheCameraOnTheVehicle) {
 }
 
 TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
-  const Rig base = base_rig();
+  const Rig base = demo_rig();
   const auto image_of = [](const CameraModel& camera, const std::string& name) {
     const Se3 camera_from_world = camera.vehicle_from_camera.inverse();
     const Eigen::Quaterniond q(camera_from_world.rotation);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/calibration/rig_yaml.h"
+#include "tests/support/demo_rig.h"
 
 namespace bevloc {
 namespace {
@@ -24,8 +24,7 @@ ReferenceTrajectory bend() {
 
 class MomentViewTest : public ::testing::Test {
  protected:
-  MomentViewTest()
-      : rig_(*read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml")), reference_(bend()) {
+  MomentViewTest() : rig_(test::demo_rig()), reference_(bend()) {
     change_ << 0.01, -0.02, 0.005, 0.03, -0.05, 0.02, 0.01, 0.004;
     error_ << 0.01, -0.008, 0.002, 0.02, -0.03, 0.015;
   }

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/calibration/reference_trajectory.h"
-#include "pipeline/calibration/rig_yaml.h"
 #include "tests/pipeline/calibration/refine/road_picture.h"
+#include "tests/support/demo_rig.h"
 
 namespace bevloc {
 namespace {
@@ -49,7 +49,7 @@ HdMap street(bool crossing) {
 }
 
 CameraModel front_camera() {
-  return read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml")->cameras[1];
+  return test::demo_rig().cameras[1];
 }
 
 std::vector<PaintSighting> sightings_in(const GreyImage& image, const CameraModel& camera,

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/calibration/rig_yaml.h"
 #include "tests/pipeline/calibration/refine/road_picture.h"
+#include "tests/support/demo_rig.h"
 
 namespace bevloc {
 namespace {
@@ -86,7 +86,7 @@ class StreetRecording : public PictureRecording {
 };
 
 TEST(RefineRig, FindsTheLineBesideABrightKerbFromARollingBody) {
-  const Rig rig = *read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml");
+  const Rig rig = test::demo_rig();
   Rig truth = rig;
   CameraAdjustment error = CameraAdjustment::Zero();
   error[kYaw] = radians(0.5);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pipeline/calibration/refine/refinement.h"
-#include "pipeline/calibration/rig_yaml.h"
+#include "tests/support/demo_rig.h"
 
 namespace bevloc {
 
@@ -124,10 +124,6 @@ inline void add_sightings(RefinementProblem& problem, const Rig& rig,
       problem.add(frame, c, time, std::move(sightings));
     }
   }
-}
-
-inline Rig demo_rig() {
-  return *read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml");
 }
 
 }  // namespace bevloc

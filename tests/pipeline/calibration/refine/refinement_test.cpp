@@ -34,7 +34,7 @@ std::array<CameraAdjustment, kCameraCount> some_errors() {
 }
 
 TEST(Refinement, RecoversAllParametersOfAWindingDrive) {
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   Rig truth = rig;
   const auto errors = some_errors();
   for (int c = 0; c < kCameraCount; ++c) truth.cameras[c] = adjusted(rig.cameras[c], errors[c]);
@@ -79,7 +79,7 @@ TEST(Refinement, RecoversAllParametersOfAWindingDrive) {
 }
 
 TEST(Refinement, TakesWhatAllCamerasShareForTheBody) {
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   const Drive drive(true, 4.0);
   // The body pitches to and fro by 0.4 degrees, which no camera's mounting does.
   const auto pitched = [&rig](int frame) {
@@ -100,7 +100,7 @@ TEST(Refinement, TakesWhatAllCamerasShareForTheBody) {
 
 TEST(Refinement, ExpectsTheTiltThatTheAccelerationsCause) {
   constexpr double kRollPerAcceleration = 0.005;  // rad per m/s^2
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   const Drive drive(true, 4.0);
   const auto expected_roll = [&drive](int frame) {
     return kRollPerAcceleration * drive.lateral_mps2(frame);
@@ -124,7 +124,7 @@ TEST(Refinement, ExpectsTheTiltThatTheAccelerationsCause) {
 }
 
 TEST(Refinement, ExpectsNoTiltOfAFramesetThatWasNotAdded) {
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   const Drive drive(true, 4.0);
   const RefinementProblem problem(rig, drive.reference, {});
   EXPECT_TRUE(problem.expected_body_from_vehicle(0).rotation.isIdentity());
@@ -132,7 +132,7 @@ TEST(Refinement, ExpectsNoTiltOfAFramesetThatWasNotAdded) {
 }
 
 TEST(Refinement, RefusesWhatAStraightRoadCannotShow) {
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   const Drive drive(false, 0.0);
   RefinementProblem problem(rig, drive.reference, {});
   add_sightings(problem, rig, [&rig](int) { return rig; }, drive,
@@ -153,7 +153,7 @@ TEST(Refinement, RefusesWhatAStraightRoadCannotShow) {
 
 TEST(Refinement, ACameraThatSeesTooLittleDoesNotChangeTheOthers) {
   constexpr int kBlind = 2;
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   Rig truth = rig;
   truth.cameras[kBlind] = adjusted(rig.cameras[kBlind], {0.01, 0.01, -0.01, 0.0, 0.0, 0.1, 0, 0});
   const Drive drive(true, 4.0);
@@ -179,7 +179,7 @@ TEST(Refinement, ACameraThatSeesTooLittleDoesNotChangeTheOthers) {
 
 TEST(Refinement, KeepsACameraThatWouldChangeBeyondWhatMountsDo) {
   constexpr int kRaised = 1;
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   Rig truth = rig;
   truth.cameras[kRaised].vehicle_from_camera.translation_m.z() += 0.5;
   const Drive drive(true, 4.0);
@@ -196,7 +196,7 @@ TEST(Refinement, KeepsACameraThatWouldChangeBeyondWhatMountsDo) {
 }
 
 TEST(Refinement, IgnoresPaintThatIsNotInTheMap) {
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   const Drive drive(true, 4.0);
   RefinementProblem problem(rig, drive.reference, {});
   add_sightings(problem, rig, [&rig](int) { return rig; }, drive, {});

@@ -77,7 +77,7 @@ CameraAdjustment error_of_camera() {
 
 /// What the refinement finds for the camera.
 CameraRefinement refined_by_ties(const Ground& ground) {
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   const Drive drive(true, 4.0);
   RefinementProblem problem(rig, drive.reference, {});
   add_ties(problem, rig, error_of_camera(), drive, ground);
@@ -114,7 +114,7 @@ TEST(RefinementTies, WrongTiesCountLittle) {
 }
 
 TEST(RefinementTies, ExpectedViewFollowsTheEstimate) {
-  const Rig rig = demo_rig();
+  const Rig rig = test::demo_rig();
   const Drive drive(true, 4.0);
   RefinementProblem problem(rig, drive.reference, {});
   const RefinementProblem::Picture picture{0, kNoPaint, drive.time_of(0)};

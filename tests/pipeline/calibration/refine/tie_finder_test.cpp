@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "common/median.h"
-#include "pipeline/calibration/rig_yaml.h"
 #include "tests/pipeline/calibration/refine/road_picture.h"
+#include "tests/support/demo_rig.h"
 
 namespace bevloc {
 namespace {
@@ -83,7 +83,7 @@ class TieFinderTest : public ::testing::Test {
     return find_ties(picture(0, grey_of), view(0), picture(1, grey_of), view(1), search_);
   }
 
-  Rig rig_ = *read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml");
+  Rig rig_ = test::demo_rig();
   ReferenceTrajectory reference_ = straight_drive();
   CameraAdjustment truth_ = CameraAdjustment::Zero();
   TieSearch search_{.spacing_px = 16.0};

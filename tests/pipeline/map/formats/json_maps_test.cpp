@@ -170,7 +170,7 @@ TEST(Nuscenes, RefusesReferencesToNothing) {
   EXPECT_THAT(json_error(replaced(kNuscenes, R"(["e", "f", "g"])", R"(["e", "x", "g"])")),
               HasSubstr("map.json:5: /line/0/node_tokens/1: found a reference to node \"x\""));
   EXPECT_THAT(json_error(replaced(kNuscenes, R"("line_token": "l1")", R"("line_token": "l2")")),
-              HasSubstr("/lane_divider/0: found a line_token that is missing"));
+              HasSubstr("/lane_divider/0: found a line_token that refers to a missing record"));
   EXPECT_THAT(json_error(replaced(kNuscenes, R"("radius": 10)", R"("radius": "10")")),
               HasSubstr("/arcline_path_3/lb/0: found no start_pose"));
 }

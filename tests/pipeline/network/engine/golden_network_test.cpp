@@ -14,6 +14,7 @@
 #include "tests/pipeline/network/golden_samples.h"
 #include "tests/pipeline/solver/golden_scenes.h"
 #include "tests/support/npy.h"
+#include "tests/support/root_mean_square.h"
 
 namespace bevloc {
 namespace {
@@ -66,12 +67,6 @@ class GoldenNetwork : public ::testing::TestWithParam<GoldenModel> {
   std::unique_ptr<Network> network_;
 };
 
-double root_mean_square(const std::vector<float>& values) {
-  double sum = 0.0;
-  for (const float value : values) sum += static_cast<double>(value) * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 /// RMS of the difference to `expected`, divided by the RMS of `expected`. `expected` has every 7th
 /// value.
 double relative_difference(std::span<const float> found, const std::vector<float>& expected) {
@@ -79,7 +74,7 @@ double relative_difference(std::span<const float> found, const std::vector<float
   for (size_t i = 0; i < expected.size(); ++i) {
     difference.push_back(found[i * kFeatureStride] - expected[i]);
   }
-  return root_mean_square(difference) / root_mean_square(expected);
+  return test::root_mean_square(difference) / test::root_mean_square(expected);
 }
 
 /// Mean and standard deviation of the logits of each class.

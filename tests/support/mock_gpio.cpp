@@ -1,9 +1,9 @@
-#include "drivers/mock/mock_gpio.h"
+#include "tests/support/mock_gpio.h"
 
 #include <algorithm>
 #include <cassert>
 
-namespace bevloc::drivers {
+namespace bevloc::test {
 namespace {
 
 /// The number of unfetched edges that the kernel keeps.
@@ -11,7 +11,7 @@ constexpr size_t kEdgeCapacity = 16;
 
 }  // namespace
 
-class MockGpio::Output final : public OutputLine {
+class MockGpio::Output final : public drivers::OutputLine {
  public:
   Output(MockGpio& gpio, unsigned line) : gpio_(gpio), line_(line) {}
   ~Output() override { gpio_.release(line_); }
@@ -28,7 +28,7 @@ class MockGpio::Output final : public OutputLine {
   unsigned line_;
 };
 
-class MockGpio::Input final : public InputLine {
+class MockGpio::Input final : public drivers::InputLine {
  public:
   Input(MockGpio& gpio, unsigned line) : gpio_(gpio), line_(line) {}
   ~Input() override { gpio_.release(line_); }
@@ -40,13 +40,13 @@ class MockGpio::Input final : public InputLine {
     return wire.high != wire.active_low;
   }
 
-  Result<std::optional<LineEdge>> next_edge(Duration timeout) override {
+  Result<std::optional<drivers::LineEdge>> next_edge(Duration timeout) override {
     std::unique_lock lock(gpio_.mutex_);
-    std::deque<LineEdge>& edges = gpio_.wires_[line_].edges;
+    std::deque<drivers::LineEdge>& edges = gpio_.wires_[line_].edges;
     gpio_.edge_arrived_.wait_for(lock, timeout, [&] { return !edges.empty() || gpio_.unplugged_; });
     if (gpio_.unplugged_) return fail("{}: the GPIO chip was removed", kChip);
     if (edges.empty()) return std::nullopt;
-    const LineEdge edge = edges.front();
+    const drivers::LineEdge edge = edges.front();
     edges.pop_front();
     return edge;
   }
@@ -56,12 +56,13 @@ class MockGpio::Input final : public InputLine {
   unsigned line_;
 };
 
-MockGpio::MockGpio(const std::vector<std::string>& line_names, const Clock& clock)
+MockGpio::MockGpio(const std::vector<std::string>& line_names, const drivers::Clock& clock)
     : clock_(clock), wires_(line_names.size()) {
   for (const std::string& name : line_names) chip_.lines.push_back({name, ""});
 }
 
-Result<std::unique_ptr<OutputLine>> MockGpio::open_output(const LineAddress& address, bool active) {
+Result<std::unique_ptr<drivers::OutputLine>> MockGpio::open_output(
+    const drivers::LineAddress& address, bool active) {
   const std::lock_guard lock(mutex_);
   const auto line = claim(address);
   if (!line) return tl::unexpected(line.error());
@@ -69,7 +70,8 @@ Result<std::unique_ptr<OutputLine>> MockGpio::open_output(const LineAddress& add
   return std::make_unique<Output>(*this, *line);
 }
 
-Result<std::unique_ptr<InputLine>> MockGpio::open_input(const LineAddress& address) {
+Result<std::unique_ptr<drivers::InputLine>> MockGpio::open_input(
+    const drivers::LineAddress& address) {
   const std::lock_guard lock(mutex_);
   const auto line = claim(address);
   if (!line) return tl::unexpected(line.error());
@@ -99,11 +101,11 @@ void MockGpio::unplug() {
 }
 
 /// The caller of claim(), put() and index_of() holds the lock.
-Result<unsigned> MockGpio::claim(const LineAddress& address) {
-  const auto place =
-      find_free_line(unplugged_ ? std::vector<GpioChipInfo>() : std::vector{chip_}, address);
+Result<unsigned> MockGpio::claim(const drivers::LineAddress& address) {
+  const auto place = drivers::find_free_line(
+      unplugged_ ? std::vector<drivers::GpioChipInfo>() : std::vector{chip_}, address);
   if (!place) return tl::unexpected(place.error());
-  chip_.lines[place->line].consumer = kGpioConsumer;
+  chip_.lines[place->line].consumer = drivers::kGpioConsumer;
   wires_[place->line].active_low = address.active_low;
   return place->line;
 }
@@ -119,7 +121,7 @@ void MockGpio::put(unsigned line, bool high) {
 }
 
 unsigned MockGpio::index_of(const std::string& line) const {
-  const auto found = std::ranges::find(chip_.lines, line, &GpioLineInfo::name);
+  const auto found = std::ranges::find(chip_.lines, line, &drivers::GpioLineInfo::name);
   assert(found != chip_.lines.end());
   return static_cast<unsigned>(found - chip_.lines.begin());
 }
@@ -131,4 +133,4 @@ void MockGpio::release(unsigned line) {
   wires_[line].edges.clear();
 }
 
-}  // namespace bevloc::drivers
+}  // namespace bevloc::test

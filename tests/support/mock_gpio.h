@@ -10,11 +10,11 @@
 #include "drivers/gpio/gpio.h"
 #include "drivers/gpio/line_lookup.h"
 
-namespace bevloc::drivers {
+namespace bevloc::test {
 
 /// One chip with the label "mock" and the name "gpiochip0". All its lines start at low voltage.
 /// Thread-safe if the clock is. Must outlive its lines.
-class MockGpio final : public Gpio {
+class MockGpio final : public drivers::Gpio {
  public:
   static constexpr const char* kChip = "mock";
 
@@ -24,10 +24,12 @@ class MockGpio final : public Gpio {
   };
 
   /// `clock` gives the times of changes and edges, and must outlive the chip.
-  MockGpio(const std::vector<std::string>& line_names, const Clock& clock);
+  MockGpio(const std::vector<std::string>& line_names, const drivers::Clock& clock);
 
-  Result<std::unique_ptr<OutputLine>> open_output(const LineAddress& address, bool active) override;
-  Result<std::unique_ptr<InputLine>> open_input(const LineAddress& address) override;
+  Result<std::unique_ptr<drivers::OutputLine>> open_output(const drivers::LineAddress& address,
+                                                           bool active) override;
+  Result<std::unique_ptr<drivers::InputLine>> open_input(
+      const drivers::LineAddress& address) override;
 
   /// Whether the voltage on the wire is high.
   bool high(const std::string& line) const;
@@ -47,20 +49,20 @@ class MockGpio final : public Gpio {
     bool active_low = false;  ///< the polarity that its user asked for
     bool is_input = false;    ///< the line is open as an input and collects edges
     std::vector<Change> changes;
-    std::deque<LineEdge> edges;
+    std::deque<drivers::LineEdge> edges;
   };
 
-  Result<unsigned> claim(const LineAddress& address);
+  Result<unsigned> claim(const drivers::LineAddress& address);
   void release(unsigned line);
   void put(unsigned line, bool high);
   unsigned index_of(const std::string& line) const;
 
-  const Clock& clock_;
+  const drivers::Clock& clock_;
   mutable std::mutex mutex_;
   std::condition_variable edge_arrived_;
-  GpioChipInfo chip_{"gpiochip0", kChip, {}};
+  drivers::GpioChipInfo chip_{"gpiochip0", kChip, {}};
   std::vector<Wire> wires_;
   bool unplugged_ = false;
 };
 
-}  // namespace bevloc::drivers
+}  // namespace bevloc::test

@@ -1,4 +1,4 @@
-"""Tests the generated parts of documents."""
+"""Tests Markdown tables and the generated parts of documents."""
 
 from __future__ import annotations
 
@@ -8,7 +8,18 @@ from pathlib import Path
 
 from training import model_table, quantization_report, report
 from training.errors import TrainingError
-from training.marks import write_between_marks
+from training.markdown import table, write_between_marks
+
+
+class Table(unittest.TestCase):
+    def test_columns_of_numbers_are_aligned_to_the_right(self):
+        head, rows = ("name", "unit", "size"), [["a", "m", "1"], ["b", "s", "2"]]
+        self.assertEqual(
+            table(head, rows),
+            "| name | unit | size |\n| --- | ---: | ---: |\n| a | m | 1 |\n| b | s | 2 |\n",
+        )
+        self.assertIn("\n| --- | --- | ---: |\n", table(head, rows, text_columns=2))
+        self.assertIn("\n| ---: | ---: | ---: |\n", table(head, rows, text_columns=0))
 
 
 class Marks(unittest.TestCase):

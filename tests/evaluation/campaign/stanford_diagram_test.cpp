@@ -1,0 +1,62 @@
+#include "evaluation/campaign/stanford_diagram.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace bevloc::evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+JudgedCycle cycle_at(double time_s, bool has_pose) {
+  JudgedCycle cycle;
+  cycle.time_s = time_s;
+  if (has_pose) cycle.pose.emplace().protection = {0.5, 0.25, radians(1.0)};
+  return cycle;
+}
+
+TEST(StanfordDiagramTest, CountsFromTheFirstPoseOfEachDriveOn) {
+  StanfordDiagram diagram;
+  for (int drive = 0; drive < 2; ++drive) {
+    diagram.begin_drive();
+    diagram.add(cycle_at(0.0, false));
+    diagram.add(cycle_at(0.01, true));
+    diagram.add(cycle_at(0.02, false));
+    diagram.add(cycle_at(0.03, true));
+  }
+  EXPECT_EQ(diagram.cycles(), 6U);
+  EXPECT_EQ(diagram.valid(), 4U);
+  EXPECT_EQ(diagram.axis(0).available, 4U);
+}
+
+TEST(StanfordDiagramTest, ASilentApplianceHasNoPose) {
+  StanfordDiagram diagram;
+  diagram.begin_drive();
+  diagram.add(cycle_at(1.0, true));
+  diagram.add(cycle_at(4.0, true));
+  EXPECT_EQ(diagram.cycles(), 301U);
+  EXPECT_EQ(diagram.valid(), 2U);
+  diagram.begin_drive();
+  diagram.add(cycle_at(9.0, true));
+  EXPECT_EQ(diagram.cycles(), 302U) << "a drive has nothing to do with the one before";
+}
+
+TEST(StanfordDiagramTest, SaysHowManyDrivesHadAPose) {
+  std::vector<NamedDiagram> diagrams{{"no fault", {}}, {"with faults", {}}};
+  StanfordDiagram& diagram = diagrams[1].diagram;
+  for (const bool has_pose : {true, false, true}) {
+    diagram.begin_drive();
+    diagram.add(cycle_at(0.0, has_pose));
+    diagram.add(cycle_at(0.01, has_pose));
+  }
+  const std::string table = to_table(diagrams);
+  EXPECT_THAT(table, HasSubstr("\nno fault: 0 of 0 drives had a pose\n"));
+  EXPECT_THAT(table, HasSubstr("\nwith faults: 2 of 3 drives had a pose\n"));
+  const auto json = nlohmann::json::parse(to_json(diagrams));
+  EXPECT_EQ(json[1]["drives"], 3);
+  EXPECT_EQ(json[1]["drives_with_pose"], 2);
+}
+
+}  // namespace
+}  // namespace bevloc::evaluation

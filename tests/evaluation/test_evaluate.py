@@ -1,0 +1,113 @@
+"""Tests what script/evaluate does with its configuration."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from types import ModuleType
+from unittest import mock
+
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def load() -> ModuleType:
+    loader = importlib.machinery.SourceFileLoader("evaluate_script", str(ROOT / "script/evaluate"))
+    spec = importlib.util.spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[loader.name] = module
+    loader.exec_module(module)
+    return module
+
+
+class EvaluateTest(unittest.TestCase):
+    script: ModuleType
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.script = load()
+
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.config = Path(folder.name) / "own.yaml"
+
+    def options(self, rig: Path | None = None) -> argparse.Namespace:
+        return argparse.Namespace(config=self.config, rig=rig, model=None)
+
+    def refusal(self, *words: str) -> str:
+        """What the script says on standard error when it ends with exit code 2."""
+        said, printed = io.StringIO(), io.StringIO()
+        arguments = ["evaluate", "--config", str(self.config), *words]
+        with mock.patch.object(sys, "argv", arguments), contextlib.redirect_stderr(said):
+            with contextlib.redirect_stdout(printed):
+                self.assertEqual(self.script.main(), 2)
+        self.assertEqual(printed.getvalue(), "")
+        return said.getvalue()
+
+    def test_says_in_one_line_what_is_wrong_with_the_configuration(self) -> None:
+        found = f"evaluate: {self.config}: found no "
+        self.assertRegex(self.refusal("--rig", "x.yaml"), f"^{found}readable file .*\n$")
+        for content, what in (
+            (b"", "sections"),
+            (b"a: [1\nb", "YAML"),
+            (b"\xff", "(readable file|YAML)"),
+            (b"calibration: 5", "keys in section calibration"),
+            (b"model:", "keys in section model"),
+        ):
+            self.config.write_bytes(content)
+            self.assertRegex(self.refusal("--rig", "x.yaml"), f"^{found}{what}.*\n$")
+
+    def test_says_that_the_copy_needs_a_folder_that_can_be_written(self) -> None:
+        self.config.write_text("calibration: {rig: a.yaml}\n")
+        read_only = OSError(30, "Read-only file system")
+        with mock.patch.object(tempfile, "NamedTemporaryFile", side_effect=read_only):
+            said = self.refusal("--rig", "x.yaml")
+        self.assertRegex(said, f"^evaluate: {self.config.parent}: found no way .*Read-only.*\n$")
+
+    def test_says_when_a_drive_fails(self) -> None:
+        self.config.write_text("calibration: {rig: a.yaml}\n")
+        with mock.patch.object(self.script, "PROGRAM", Path("/bin/false")):
+            with contextlib.redirect_stdout(io.StringIO()), self.assertRaises(self.script.BadInput):
+                self.script.run_drive(1, None, self.config, self.drive_options())
+        with mock.patch.object(self.script, "PROGRAM", self.config.parent / "no"):
+            with self.assertRaisesRegex(self.script.BadInput, "found no program that runs"):
+                self.script.run_drive(1, None, self.config, self.drive_options())
+
+    def drive_options(self) -> argparse.Namespace:
+        return argparse.Namespace(out=self.config.parent, duration=1.0)
+
+    def test_a_configuration_without_changes_is_used_itself(self) -> None:
+        self.config.write_text("calibration: {rig: a.yaml, online: {enabled: true}}\n")
+        with self.script.configuration(self.options()) as used:
+            self.assertEqual(used, self.config)
+
+    def test_no_drive_knows_what_another_one_learned(self) -> None:
+        self.config.write_text("calibration: {rig: a.yaml, online: {enabled: true, file: b}}\n")
+        before = self.config.read_text()
+        with self.script.configuration(self.options()) as used:
+            self.assertEqual(used.parent, self.config.parent)
+            calibration = yaml.safe_load(used.read_text())["calibration"]
+            self.assertEqual(calibration, {"rig": "a.yaml", "online": {"enabled": True}})
+        self.assertFalse(used.exists())
+        self.assertEqual(self.config.read_text(), before)
+
+    def test_a_rig_replaces_that_of_the_configuration(self) -> None:
+        self.config.write_text("calibration: {rig: a.yaml}\nmodel: {file: c}\n")
+        with self.script.configuration(self.options(rig=Path("x.yaml"))) as used:
+            stated = yaml.safe_load(used.read_text())
+        self.assertEqual(stated["calibration"]["rig"], str(Path("x.yaml").resolve()))
+        self.assertEqual(stated["model"], {"file": "c"})
+
+
+if __name__ == "__main__":
+    unittest.main()
