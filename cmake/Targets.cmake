@@ -32,16 +32,13 @@ function(bevloc_compile_together name)
 endfunction()
 
 # bevloc_library(NAME SOURCES... [FAST] [LINK libs...])
-# FAST compiles with -O3. Libraries with the inner loops need it. With sanitizers, only these libraries
-# are optimized: compiling the others without optimization takes half of the time.
+# FAST compiles with -O3. Libraries with the inner loops need it.
 function(bevloc_library name)
   cmake_parse_arguments(ARG "FAST" "" "LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PUBLIC bevloc_options ${ARG_LINK})
   if(ARG_FAST)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)
-  elseif(NOT BEVLOC_FUZZ)
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Sanitize>:-O0>)
   endif()
   bevloc_compile_together(${name})
   # The sources for one instruction set use the same names, and two others only compile with GCC.

@@ -23,9 +23,10 @@ inline bool is_complete_jpeg(std::span<const uint8_t> file) {
 /// MJPEG.
 inline size_t min_image_bytes(const ImageView& image) {
   if (image.format == PixelFormat::kMjpeg) return 0;
-  const auto plane =
-      static_cast<size_t>(image.planes[0].stride_bytes) * static_cast<size_t>(image.height);
-  return image.format == PixelFormat::kNv12 ? plane + plane / 2 : plane;
+  const auto stride_bytes = static_cast<size_t>(image.planes[0].stride_bytes);
+  const auto rows = static_cast<size_t>(image.height);
+  const size_t chroma_rows = image.format == PixelFormat::kNv12 ? (rows + 1) / 2 : 0;
+  return stride_bytes * (rows + chroma_rows);
 }
 
 /// Whether the device wrote enough bytes. For MJPEG, whether the file has both its markers.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pipeline/preprocessing/network_camera.h"
+#include "pipeline/solver/posterior.h"
 
 namespace bevloc {
 namespace {
@@ -85,9 +86,14 @@ CameraMask Localizer::localize(const CameraImages& images, const Se2& prior, Sea
   update_view(usable, images.reference_from_exposure);
   network_->run_image_branch();
   rasterizer_.draw(prior, network_->raster_input());
-  network_->run_map_branch();
-  solvers_[static_cast<size_t>(range)]->solve(network_->bev_features(), network_->map_features(),
-                                              result);
+  if (map_nearby()) {
+    network_->run_map_branch();
+    solvers_[static_cast<size_t>(range)]->solve(network_->bev_features(), network_->map_features(),
+                                                result);
+  } else {
+    // The features of an empty map are not constant: those near the border of the raster differ.
+    set_no_evidence(hypotheses(range), result);
+  }
   if (online_calibration_) learn(images, usable, range, prior, result);
   return usable;
 }

@@ -77,18 +77,24 @@ void check_ports(const std::vector<nn::Port>& ports, const std::vector<Contract>
   }
 }
 
-/// Bounds of the solver's parameters. Trained parameters lie far inside.
-constexpr float kSmallestParameter = 0.01F;
-constexpr float kLargestParameter = 1e6F;
+struct Bounds {
+  float least;
+  float most;
+};
+/// Trained parameters lie far inside of these bounds.
+constexpr Bounds kParameterBounds{0.01F, 1e6F};
+/// Factors by which the evaluation corrects sigma and score. They are near 1: any match would pass
+/// the limits of the score if it were a thousand times too large.
+constexpr Bounds kCorrectionBounds{0.1F, 10.0F};
 
-float parameter(const nn::Graph& graph, const std::string& key) {
+float parameter(const nn::Graph& graph, const std::string& key, const Bounds& bounds) {
   const auto entry = graph.metadata.find(key);
   if (entry == graph.metadata.end()) nn::refuse("metadata '{}' is missing", key);
   const std::string& text = entry->second;
   const auto number = parse_number<float>(text);
-  if (!(number >= kSmallestParameter && number <= kLargestParameter)) {
-    nn::refuse("metadata '{}' is '{}', wanted a number of {} to {}", key, text, kSmallestParameter,
-               kLargestParameter);
+  if (!(number >= bounds.least && number <= bounds.most)) {
+    nn::refuse("metadata '{}' is '{}', wanted a number of {} to {}", key, text, bounds.least,
+               bounds.most);
   }
   return *number;
 }
@@ -98,27 +104,30 @@ std::string metadata_or_empty(const nn::Graph& graph, const std::string& key) {
   return entry == graph.metadata.end() ? std::string() : entry->second;
 }
 
-float parameter_or(const nn::Graph& graph, const std::string& key, float fallback) {
-  return graph.metadata.contains(key) ? parameter(graph, key) : fallback;
+float parameter_or(const nn::Graph& graph, const std::string& key, float fallback,
+                   const Bounds& bounds) {
+  return graph.metadata.contains(key) ? parameter(graph, key, bounds) : fallback;
 }
 
 SolverParameters read_solver_parameters(const nn::Graph& graph) {
   SolverParameters parameters;
-  parameters.joint_scale = parameter(graph, "bevloc.solver.joint_scale");
-  parameters.x_scale = parameter(graph, "bevloc.solver.x_scale");
-  parameters.y_scale = parameter(graph, "bevloc.solver.y_scale");
-  parameters.yaw_scale = parameter(graph, "bevloc.solver.yaw_scale");
-  parameters.gem_omega = parameter(graph, "bevloc.solver.gem_omega");
+  parameters.joint_scale = parameter(graph, "bevloc.solver.joint_scale", kParameterBounds);
+  parameters.x_scale = parameter(graph, "bevloc.solver.x_scale", kParameterBounds);
+  parameters.y_scale = parameter(graph, "bevloc.solver.y_scale", kParameterBounds);
+  parameters.yaw_scale = parameter(graph, "bevloc.solver.yaw_scale", kParameterBounds);
+  parameters.gem_omega = parameter(graph, "bevloc.solver.gem_omega", kParameterBounds);
   const float joint = parameters.joint_scale;
   for (const auto& [name, value] : {std::pair("refine_x_scale", &parameters.refine_x_scale),
                                     std::pair("refine_y_scale", &parameters.refine_y_scale),
                                     std::pair("refine_yaw_scale", &parameters.refine_yaw_scale),
                                     std::pair("banded_x_scale", &parameters.banded_x_scale),
                                     std::pair("banded_y_scale", &parameters.banded_y_scale)}) {
-    *value = parameter_or(graph, std::string("bevloc.solver.") + name, joint);
+    *value = parameter_or(graph, std::string("bevloc.solver.") + name, joint, kParameterBounds);
   }
-  parameters.sigma_scale = parameter_or(graph, "bevloc.solver.sigma_scale", 1.0F);
-  parameters.score_scale = parameter_or(graph, "bevloc.solver.score_scale", 1.0F);
+  parameters.sigma_scale =
+      parameter_or(graph, "bevloc.solver.sigma_scale", 1.0F, kCorrectionBounds);
+  parameters.score_scale =
+      parameter_or(graph, "bevloc.solver.score_scale", 1.0F, kCorrectionBounds);
   return parameters;
 }
 

@@ -70,6 +70,12 @@ Status ImagePreprocessor::run(const ImageView& image, std::span<int8_t> planes) 
     return fail("camera frame: found {}x{} pixels, wanted {}x{} as in the calibration", image.width,
                 image.height, width_px, height_px);
   }
+  const bool pairs_pixels =
+      image.format == PixelFormat::kYuyv || image.format == PixelFormat::kUyvy;
+  if (pairs_pixels && width_px % 2 != 0) {
+    return fail("camera frame: found {} columns of {}, wanted an even number", width_px,
+                to_string(image.format));
+  }
   switch (image.format) {
     case PixelFormat::kRgb24:
       remap_rgb(image.rgb(), table_, planes.data());

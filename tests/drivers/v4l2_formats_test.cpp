@@ -72,6 +72,9 @@ TEST(CompleteImage, OfNv12HasItsChroma) {
   EXPECT_FALSE(is_complete(view)) << "only luma";
   view.bytes_used = 64 * 60;
   EXPECT_TRUE(is_complete(view));
+  view.height = 41;
+  EXPECT_EQ(min_image_bytes(view), 64U * (41U + 21U)) << "the last row has chroma of its own";
+  view.height = 40;
   view.format = PixelFormat::kYuyv;
   view.bytes_used = 64 * 40 - 1;
   EXPECT_FALSE(is_complete(view));

@@ -92,6 +92,8 @@ void lower_relu(LoweringState& state, const Node& node) {
 void lower_concat(LoweringState& state, const Node& node) {
   ConcatStep concat;
   for (size_t i = 0; i < node.inputs.size(); ++i) {
+    const size_t axes = state.real_activation(node, i).layout.shape().size();
+    if (axes != 4) refuse("{}: found an input with {} axes, wanted 4", node.label, axes);
     concat.inputs.push_back(state.materialized_input(node, i));
   }
   if (node.integer("axis", 0) != 1 || concat.inputs.empty()) {

@@ -28,13 +28,25 @@ Images noise(const Rig& rig) {
   return images;
 }
 
+/// A road along x with a bend and a line across it.
+HdMap road() {
+  HdMap map;
+  for (const double y : {-3.0, 0.0, 4.0}) {
+    map.elements.push_back(
+        {ElementClass::kLaneDivider, Appearance::kSolid, {{-40.0, y}, {0.0, y}, {40.0, y + 5.0}}});
+  }
+  map.elements.push_back(
+      {ElementClass::kRoadBoundary, Appearance::kKerb, {{6.0, -8.0}, {6.0, 8.0}}});
+  return map;
+}
+
 struct Outcome {
   CameraMask used;
   std::vector<float> mask;
+  SolverResult result;
 };
 
-Outcome localize(const Rig& rig, const CameraImages& images, int threads) {
-  const HdMap map;
+Outcome localize(const Rig& rig, const HdMap& map, const CameraImages& images, int threads) {
   const MapIndex index(map);
   LocalizerOptions options;
   options.network.threads = threads;
@@ -44,9 +56,8 @@ Outcome localize(const Rig& rig, const CameraImages& images, int threads) {
     ADD_FAILURE() << localizer.error().message;
     return {};
   }
-  SolverResult result;
   Outcome outcome;
-  outcome.used = (*localizer)->localize(images, {}, SearchRange::kTracking, result);
+  outcome.used = (*localizer)->localize(images, {}, SearchRange::kTracking, outcome.result);
   const std::span<const float> mask = (*localizer)->perceived_mask();
   outcome.mask.assign(mask.begin(), mask.end());
   return outcome;
@@ -64,14 +75,33 @@ TEST(Localizer, GivesTheSameResultOnAnyNumberOfThreads) {
   }
   images.images[1] = small.view();
 
-  const Outcome one = localize(rig, images, 1);
+  const Outcome one = localize(rig, road(), images, 1);
   EXPECT_EQ(one.used, CameraMask(0b101101));
   EXPECT_GT(std::ranges::max(one.mask) - std::ranges::min(one.mask), 1.0F);
+  EXPECT_EQ(one.result.evidence, Evidence::kGood);
   for (const int threads : {2, 3}) {
-    const Outcome many = localize(rig, images, threads);
+    const Outcome many = localize(rig, road(), images, threads);
     EXPECT_EQ(many.used, one.used) << threads;
     EXPECT_EQ(many.mask, one.mask) << threads;
+    EXPECT_EQ(many.result.x_probability, one.result.x_probability) << threads;
+    EXPECT_EQ(many.result.covariance, one.result.covariance) << threads;
   }
+}
+
+TEST(Localizer, WithoutMappedLinesThereIsNoEvidence) {
+  const Rig rig = sim::nominal_rig();
+  const Images noise_images = noise(rig);
+  CameraImages images;
+  for (size_t camera = 0; camera < noise_images.size(); ++camera) {
+    images.images[camera] = noise_images[camera].view();
+  }
+  images.present.set();
+  EXPECT_EQ(localize(rig, HdMap{}, images, 1).result.evidence, Evidence::kNone);
+  HdMap far_away = road();
+  for (MapElement& element : far_away.elements) {
+    for (Eigen::Vector2d& point : element.points) point.x() += 500.0;
+  }
+  EXPECT_EQ(localize(rig, far_away, images, 1).result.evidence, Evidence::kNone);
 }
 
 const std::string kModel = std::string(BEVLOC_SOURCE_DIR) + "/models/nano.onnx";

@@ -49,6 +49,17 @@ class RefusedModel : public ::testing::Test {
     EXPECT_GT(count, 0U);
     return message_for_bytes(bytes);
   }
+
+  /// The message for the tiny network with one more entry of metadata (ModelProto.metadata_props,
+  /// field 14), which must be short.
+  std::string message_after_adding(const std::string& key, const std::string& value) {
+    const auto field = [](char tag, const std::string& content) {
+      return std::string{tag, static_cast<char>(content.size())} + content;
+    };
+    const std::string entry = field('\x0A', key) + field('\x12', value);
+    return message_for_bytes(test::read_bytes(test::fixture("tiny_network_int8.onnx")) +
+                             field('\x72', entry));
+  }
 };
 
 TEST_F(RefusedModel, MissingFile) {
@@ -114,6 +125,16 @@ TEST_F(RefusedModel, MetadataOutOfRange) {
                 HasSubstr(fmt::format("metadata 'bevloc.solver.joint_scale' is '{}', wanted a "
                                       "number of 0.01 to 1000000",
                                       text)));
+  }
+}
+
+TEST_F(RefusedModel, CorrectionsOfSigmaAndScoreThatAreNotNearOne) {
+  for (const std::string key : {"bevloc.solver.score_scale", "bevloc.solver.sigma_scale"}) {
+    for (const char* const text : {"1118", "0.01"}) {
+      EXPECT_THAT(
+          message_after_adding(key, text),
+          HasSubstr(fmt::format("metadata '{}' is '{}', wanted a number of 0.1 to 10", key, text)));
+    }
   }
 }
 

@@ -164,5 +164,23 @@ TEST(ImageRemap, RefusesAFrameOfTheWrongSize) {
             "camera frame: found 1280x720 pixels, wanted 640x360 as in the calibration");
 }
 
+/// The last pixel of a row would have no V.
+TEST(ImageRemap, RefusesAnOddNumberOfColumnsInPairs) {
+  CameraModel camera = front_camera();
+  camera.intrinsics.width_px = 641;
+  const std::vector<uint8_t> row_pairs(2 * 642 * 360);
+  ImageView image;
+  image.format = PixelFormat::kUyvy;
+  image.width = 641;
+  image.height = 360;
+  image.planes[0] = {row_pairs.data(), 2 * 642};
+  Planes planes(kNetworkImageSize);
+  ImagePreprocessor preprocessor(camera);
+  const Status status = preprocessor.run(image, planes);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().message,
+            "camera frame: found 641 columns of uyvy, wanted an even number");
+}
+
 }  // namespace
 }  // namespace bevloc

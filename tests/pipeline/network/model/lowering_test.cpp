@@ -75,6 +75,17 @@ TEST_F(RefusedGraph, ZeroPointThatIsNotZero) {
   EXPECT_THAT(message_for(graph), HasSubstr("zero point is 128, wanted 0"));
 }
 
+/// Axis 1 is that of the channels only if there are four axes.
+TEST_F(RefusedGraph, ConcatOfTensorsWithThreeAxes) {
+  Graph graph;
+  graph.inputs = {{"x", ElementType::kFloat32, {6, 9, 11}}};
+  graph.outputs = {{"y", ElementType::kFloat32, {6, 18, 11}}};
+  Node concat{Operator::kConcat, "node 'join' (Concat)", {"x", "x"}, "y", {}};
+  concat.attributes["axis"] = int64_t{1};
+  graph.nodes.push_back(concat);
+  EXPECT_EQ(message_for(graph), "node 'join' (Concat): found an input with 3 axes, wanted 4");
+}
+
 TEST_F(RefusedGraph, ScaleThatIsNotPositive) {
   Graph graph = model("conv_int8");
   auto& bytes = graph.constants.at(node(graph, Operator::kQuantizeLinear).inputs[1]).bytes;
