@@ -1,9 +1,6 @@
 #include "pipeline/network/network.h"
 
 #include <algorithm>
-#include <ranges>
-
-#include <fmt/ranges.h>
 
 #include "common/number_text.h"
 #include "pipeline/network/model/load_error.h"
@@ -52,8 +49,9 @@ std::vector<Contract> output_contracts() {
 }
 
 std::string names_of(const std::vector<nn::Port>& ports) {
-  if (ports.empty()) return "none";
-  return fmt::format("{}", fmt::join(ports | std::views::transform(&nn::Port::name), ", "));
+  std::string names;
+  for (const nn::Port& port : ports) names += (names.empty() ? "" : ", ") + port.name;
+  return names.empty() ? "none" : names;
 }
 
 void check_ports(const std::vector<nn::Port>& ports, const std::vector<Contract>& contracts,

@@ -4,10 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <ranges>
+#include <string>
 #include <utility>
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include "pipeline/solver/banded_matcher.h"
 #include "pipeline/solver/grid_limits.h"
@@ -164,11 +164,13 @@ double count_of(const HypothesisGrid& hypotheses) {
 }
 
 Result<SolverKind> solver_kind_from(std::string_view name) {
+  std::string known;
   for (const auto& [candidate, kind] : kNames) {
     if (candidate == name) return kind;
+    known += known.empty() ? "" : ", ";
+    known += candidate;
   }
-  return fail("solver: found \"{}\", wanted one of {}", name,
-              fmt::join(kNames | std::views::keys, ", "));
+  return fail("solver: found \"{}\", wanted one of {}", name, known);
 }
 
 std::string_view name_of(SolverKind kind) {
