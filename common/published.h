@@ -14,9 +14,9 @@ namespace bevloc {
 /// never waits. The value is readable from any thread: load() tries again while a store is under
 /// way. All functions copy sizeof(T) bytes. Does not allocate.
 ///
-/// A real-time thread reads a value of a thread of lower priority with try_load(). If it
-/// interrupted the store on its own processor, load() would keep that store from its end, and never
-/// return.
+/// A real-time thread reads a value of a thread of lower priority with try_load(). It may have
+/// interrupted the store on its own processor. Then load() would never return, because the store
+/// could not go on meanwhile.
 template <typename T>
 class Published {
   static_assert(std::is_trivially_copyable_v<T>);

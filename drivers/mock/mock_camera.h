@@ -22,7 +22,7 @@ struct MockCameraConfig {
   CameraTiming timing;
   int buffers = kDefaultFrameBuffers;
   std::shared_ptr<const sim::FaultBoard> faults;  ///< null without faults
-  uint64_t fault_seed = 0;  ///< of the dirt, and of the noise of dark and blinded pictures
+  uint64_t fault_seed = 0;  ///< chooses dirt, and noise of dark and blinded pictures
 };
 
 /// With a real clock, images are drawn ahead of time in the thread that calls next_frame().

@@ -18,7 +18,7 @@ namespace bevloc::evaluation {
 /// Passes everything on while there is no fault. Threads: as Bus demands.
 class FaultyBus final : public can::Bus {
  public:
-  /// The clock must outlive the bus. `seed`: that of the drive; chooses the frames that are lost.
+  /// The clock must outlive the bus. `seed` is the seed of the drive. It chooses the lost frames.
   FaultyBus(std::unique_ptr<can::Bus> bus, std::shared_ptr<const sim::FaultBoard> faults,
             const drivers::Clock& clock, Time drive_start, uint64_t seed);
 

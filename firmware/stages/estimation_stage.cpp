@@ -272,7 +272,8 @@ void EstimationStage::count_loss(WhyMask why) {
   ++counters_.lost;
 }
 
-/// Counts a loss if a pose that is valid was not sent, and the one before was.
+/// Counts a loss when a valid pose is withheld. Does not count it again while the next poses are
+/// withheld, too.
 void EstimationStage::note_sent(const can::LocalizerStatus& sent) {
   counters_.time_source = sent.time_source;
   const bool withheld = health_.pose_valid() && !claims_pose(sent.state);
