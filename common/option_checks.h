@@ -42,7 +42,7 @@ inline CLI::Validator whole_number(uint64_t highest = std::numeric_limits<uint64
 
 /// Refuses an empty name, which an unset variable of a script gives. `wanted` says what has the
 /// name, such as "a folder".
-inline CLI::Validator name_of(const std::string& wanted) {
+inline CLI::Validator is_name_of(const std::string& wanted) {
   const auto check = [wanted](const std::string& text) -> std::string {
     return text.empty() ? fmt::format("found an empty name, wanted {}", wanted) : "";
   };

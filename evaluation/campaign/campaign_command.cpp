@@ -21,7 +21,7 @@ void CampaignCommand::declare(CLI::App& app) {
       ->capture_default_str();
   inputs_.declare(*campaign);
   campaign->add_option("--map", inputs_.options.map, "Drive through this map instead of towns")
-      ->check(name_of("a map"));
+      ->check(is_name_of("a map"));
   campaign->add_option("--json", json_file_, "Write the rows as JSON to this file")
       ->check(output_file());
   campaign->add_flag("--timeline", timeline_, "Print all changes of state and reasons");

@@ -28,7 +28,7 @@ void CampaignInputs::declare(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--config", config, "Configuration with mock cameras")->capture_default_str();
   command.add_option("--matches", table, "Measured matches for --level stage")
-      ->check(name_of("a file of `bevloc tune matches`"))
+      ->check(is_name_of("a file of `bevloc tune matches`"))
       ->default_str(kShippedTable);
 }
 

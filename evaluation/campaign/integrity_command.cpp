@@ -20,7 +20,7 @@ void IntegrityCommand::declare(CLI::App& eval) {
       ->capture_default_str();
   inputs_.declare(*integrity);
   integrity->add_option("--map", maps_, "Every second seed drives through one of these, in turn")
-      ->check(name_of("a map"));
+      ->check(is_name_of("a map"));
   integrity->add_option("--json", json_file_, "Write the diagrams as JSON to this file")
       ->check(output_file());
   integrity->footer(

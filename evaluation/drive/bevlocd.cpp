@@ -43,15 +43,15 @@ void declare_options(CLI::App& app, DriveOptions& options) {
   drive
       ->add_option("--map", options.map_file,
                    "Drive through this HD map of any format (docs/maps.md)")
-      ->check(name_of("a map"));
+      ->check(is_name_of("a map"));
   drive
       ->add_option("--out", options.out,
                    "Folder for can.log, poses.csv and sheet.png (default: out)")
-      ->check(name_of("a folder"));
+      ->check(is_name_of("a folder"));
   drive
       ->add_option("--save-pictures", options.pictures_folder,
                    "Write pictures and reference poses to this folder, for `bevloc calib`")
-      ->check(name_of("a folder"));
+      ->check(is_name_of("a folder"));
   drive->add_option("--json", options.json_file, "Write the result as JSON to this file")
       ->check(output_name());
   drive->add_flag("--fast", options.fast,

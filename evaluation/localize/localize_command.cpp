@@ -147,7 +147,7 @@ void LocalizeCommand::declare(CLI::App& app) {
   localize
       ->add_option("--motion", motion_file_,
                    "YAML file: how the vehicle moved between the pictures (docs/localize.md)")
-      ->check(name_of("a file"));
+      ->check(is_name_of("a file"));
   localize->add_option("--model", model_, "Network")->capture_default_str();
   add_choice(*localize, "--solver", solver_,
              {{"banded+refine", SolverKind::kBandedRefined},

@@ -64,7 +64,7 @@ double distance_m(const Eigen::AlignedBox2d& area, const Se2& pose) {
   return area.exteriorDistance(pose.translation());
 }
 
-std::string place_of(const Se2& pose) {
+std::string in_words(const Se2& pose) {
   return fmt::format("x {:.0f} m, y {:.0f} m", pose.x_m, pose.y_m);
 }
 
@@ -117,13 +117,13 @@ Result<GivenPose> pose_from(const std::string& text, PoseFrame frame, const HdMa
   const bool is_metric = distance_m(area, metric) <= kAround_m;
   if (frame == PoseFrame::kMap) {
     if (is_metric) return GivenPose{metric, PoseFrame::kMap};
-    return tl::unexpected(outside_of(area, map.origin, place_of(metric)));
+    return tl::unexpected(outside_of(area, map.origin, in_words(metric)));
   }
   const double geodetic_m =
       geodetic ? distance_m(area, *geodetic) : std::numeric_limits<double>::infinity();
   if (geodetic_m <= kAround_m) return GivenPose{*geodetic, PoseFrame::kGeodetic};
   if (frame == PoseFrame::kGeodetic) {
-    return tl::unexpected(geodetic ? outside_of(area, map.origin, place_of(*geodetic))
+    return tl::unexpected(geodetic ? outside_of(area, map.origin, in_words(*geodetic))
                                    : no_geodetic_place(*numbers, map.origin));
   }
   if (is_metric && geodetic_m <= kMistaken_m) {
@@ -134,8 +134,8 @@ Result<GivenPose> pose_from(const std::string& text, PoseFrame frame, const HdMa
   }
   if (is_metric) return GivenPose{metric, PoseFrame::kMap};
   const std::string as_degrees =
-      geodetic ? fmt::format(" (as latitude and longitude: {})", place_of(*geodetic)) : "";
-  return tl::unexpected(outside_of(area, map.origin, place_of(metric) + as_degrees));
+      geodetic ? fmt::format(" (as latitude and longitude: {})", in_words(*geodetic)) : "";
+  return tl::unexpected(outside_of(area, map.origin, in_words(metric) + as_degrees));
 }
 
 std::string text_of(const GivenPose& given) {

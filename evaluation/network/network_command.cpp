@@ -51,7 +51,7 @@ void NetworkCommand::declare(CLI::App& eval) {
   network
       ->add_option("--map", map_file_,
                    "Take the samples on this map instead of in procedural towns")
-      ->check(bevloc::name_of("a map"));
+      ->check(is_name_of("a map"));
   network->add_option("--json", json_file_, "Write the rows as JSON to this file")
       ->check(output_file());
   network->add_option("--csv", csv_file_, "Write the rows as CSV to this file")

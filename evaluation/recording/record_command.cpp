@@ -9,9 +9,9 @@ void RecordCommand::declare(CLI::App& app) {
   auto* record = app.add_subcommand("record", "Run bevlocd and record what it sees and sends");
   record->add_option("--config", config_file_, "Configuration of bevlocd")
       ->required()
-      ->check(name_of("a configuration"));
+      ->check(is_name_of("a configuration"));
   record->add_option("--out", out_, "Folder of the recording")
-      ->check(name_of("a folder"))
+      ->check(is_name_of("a folder"))
       ->capture_default_str();
   record->add_flag("--raw", raw_, "Record the images without loss");
   record->add_option("options", rest_, "Further options of bevlocd, after --, such as --fast");

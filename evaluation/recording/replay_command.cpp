@@ -64,20 +64,20 @@ void ReplayCommand::declare(CLI::App& app) {
   replay
       ->add_option("--config", overrides_.config,
                    "Another configuration, with its calibration, model and solver")
-      ->check(name_of("a configuration"));
+      ->check(is_name_of("a configuration"));
   replay->add_option("--model", overrides_.model, "Another model (.onnx)")
-      ->check(name_of("a model"));
-  replay->add_option("--map", overrides_.map, "Another map")->check(name_of("a map"));
+      ->check(is_name_of("a model"));
+  replay->add_option("--map", overrides_.map, "Another map")->check(is_name_of("a map"));
   replay
       ->add_option("--from-candump", candump_,
                    "The bus from a candump log; needs --config and --images")
-      ->check(name_of("a log"));
+      ->check(is_name_of("a log"));
   replay
       ->add_option("--images", images_,
                    "With --from-candump: one folder per camera with pictures and frames.txt")
-      ->check(name_of("a folder"));
+      ->check(is_name_of("a folder"));
   replay->add_option("--out", out_, "Folder for can.log and poses.csv")
-      ->check(name_of("a folder"))
+      ->check(is_name_of("a folder"))
       ->capture_default_str();
   replay->add_option("--json", json_file_, "Write the result as JSON to this file")
       ->check(output_name());

@@ -56,7 +56,7 @@ void declare_options(CLI::App& app, ProgramOptions& options) {
   app.set_version_flag("--version", std::string(version()));
   app.add_option("--config", options.config_file, "Configuration file")
       ->required()
-      ->check(name_of("a configuration"));
+      ->check(is_name_of("a configuration"));
   app.add_flag("--check-config", options.check_config,
                "Check the configuration and everything that it names, then exit");
   app.add_option_function<std::string>(
@@ -66,7 +66,7 @@ void declare_options(CLI::App& app, ProgramOptions& options) {
       ->type_name("[PORT]");
   app.add_option("--record", options.record,
                  "Record images, bus and poses into this folder (docs/recording.md)")
-      ->check(name_of("a folder"));
+      ->check(is_name_of("a folder"));
   app.add_flag("--record-raw", options.record_raw,
                "Record the images without loss, so that a replay gives the same poses");
 }

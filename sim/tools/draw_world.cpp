@@ -199,7 +199,7 @@ void add_options(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--map", options.map_file,
                  "Draw a world dressed on this map instead of a generated town")
-      ->check(name_of("a map"));
+      ->check(bevloc::is_name_of("a map"));
   app.add_option("--east", options.east_m, "Centre of the image, metres east of the map's origin")
       ->check(number_between(-kFarthest_m, kFarthest_m));
   app.add_option("--north", options.north_m,

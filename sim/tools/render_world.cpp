@@ -62,7 +62,7 @@ void add_conditions(CLI::App& app, Options& options) {
 }
 
 void add_options(CLI::App& app, Options& options) {
-  using bevloc::name_of;
+  using bevloc::is_name_of;
   using bevloc::number_between;
   using bevloc::whole_number;
   app.add_option("--seed", options.seed, "Seed of the town")->check(whole_number());
@@ -80,9 +80,9 @@ void add_options(CLI::App& app, Options& options) {
       ->expected(3);
   app.add_option("--pictures", options.pictures,
                  "Folder to which the six pictures, rig.yaml and map.bvm are written, too")
-      ->check(name_of("a folder"));
+      ->check(is_name_of("a folder"));
   app.add_option("--photos", options.photos, "Folder of script/photos, to cover surfaces with")
-      ->check(name_of("a folder"));
+      ->check(is_name_of("a folder"));
   app.add_option("--time", options.time_s, "Time of the simulated traffic in seconds")
       ->check(number_between(0.0, 1e6));
   app.add_flag("--network-size", options.network_size,

@@ -51,8 +51,9 @@ TEST(OptionChecks, AWholeNumberHasNoSignAnd64Bits) {
 }
 
 TEST(OptionChecks, ANameIsNotEmpty) {
-  EXPECT_EQ(message_of(name_of("a folder"), "out"), "");
-  EXPECT_EQ(message_of(name_of("a folder"), ""), "--option: found an empty name, wanted a folder");
+  EXPECT_EQ(message_of(is_name_of("a folder"), "out"), "");
+  EXPECT_EQ(message_of(is_name_of("a folder"), ""),
+            "--option: found an empty name, wanted a folder");
 }
 
 TEST(OptionChecks, AnOutputFileIsNotStandardOutput) {

@@ -140,7 +140,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, kMostScenes));
   app.add_option("--pictures", options.images, "Number of scenes to draw as images")
       ->check(CLI::Range(0, kMostScenes));
-  app.add_option("--out", options.out, "Folder for the images")->check(bevloc::name_of("a folder"));
+  app.add_option("--out", options.out, "Folder for the images")
+      ->check(bevloc::is_name_of("a folder"));
   if (const auto ended = bevloc::parse_options(app, argc, argv)) return *ended;
   const uint64_t seed_base =
       options.tuning ? bevloc::sim::kTuningSeedBase : bevloc::sim::kEvaluationSeedBase;

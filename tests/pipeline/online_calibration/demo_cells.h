@@ -1,6 +1,7 @@
 // Features of a made-up road as six cameras with wrong extrinsics see it.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -23,6 +24,33 @@ inline ExtrinsicErrors error_of(int camera, int axis, double value) {
   return errors;
 }
 
+/// A sum of waves of 6 to 12 m, different for each number.
+class WavyRoad {
+ public:
+  explicit WavyRoad(int number) {
+    for (int i = 0; i < static_cast<int>(waves_.size()); ++i) {
+      const double angle_rad = 1.7 * number + 0.9 * i;
+      const double length_m = 6.0 + (number * 5 + i * 3) % 7;
+      waves_[i] = {
+          2.0 * M_PI / length_m * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)),
+          number + 2.0 * i};
+    }
+  }
+
+  double at(const Eigen::Vector2d& point) const {
+    double sum = 0.0;
+    for (const Wave& wave : waves_) sum += std::sin(wave.slope.dot(point) + wave.phase_rad);
+    return sum;
+  }
+
+ private:
+  struct Wave {
+    Eigen::Vector2d slope;  ///< radians per metre
+    double phase_rad;
+  };
+  std::array<Wave, 4> waves_;
+};
+
 /// Smooth map features, and BEV features that show them where cameras with errors put them.
 class DemoCells {
  public:
@@ -34,6 +62,16 @@ class DemoCells {
         bev_(kFeatureGrid, kChannels, HypothesisGrid()),
         map_(kFeatureGrid, kChannels, HypothesisGrid()),
         moved_(static_cast<size_t>(kFeatureGrid.cells()) * map_.lanes()) {
+    std::vector<float> map;
+    for (int channel = 0; channel < kChannels; ++channel) {
+      roads_.emplace_back(channel);
+      other_roads_.emplace_back(channel + 100);
+      for (int cell = 0; cell < kFeatureGrid.cells(); ++cell) {
+        map.push_back(static_cast<float>(roads_[channel].at(place_of(cell))));
+      }
+    }
+    map_.assign(map);
+    standardise(map_);
     show(ExtrinsicErrors::Zero());
   }
 
@@ -42,11 +80,9 @@ class DemoCells {
   /// Sees the map with true extrinsics that differ from the rig's by `errors`. Features fade to
   /// half at 20 m, as those of a network do. The cells of the cameras in `blind` show another road.
   void show(const ExtrinsicErrors& errors, CameraMask blind = {}) {
-    std::vector<float> map(kChannels * static_cast<size_t>(kFeatureGrid.cells()));
-    std::vector<float> bev(map.size());
+    std::vector<float> bev(kChannels * static_cast<size_t>(kFeatureGrid.cells()));
     for (int cell = 0; cell < kFeatureGrid.cells(); ++cell) {
-      const Eigen::Vector2d point(kFeatureGrid.x_of_row(cell / kFeatureGrid.cols),
-                                  kFeatureGrid.y_of_col(cell % kFeatureGrid.cols));
+      const Eigen::Vector2d point = place_of(cell);
       Eigen::Vector2d shown = point;
       bool other_road = false;
       for (size_t slot = 0; slot < kViewSlots; ++slot) {
@@ -61,13 +97,11 @@ class DemoCells {
       const double fade = 1.0 / (1.0 + point.squaredNorm() / 400.0);
       for (int channel = 0; channel < kChannels; ++channel) {
         const size_t i = static_cast<size_t>(channel) * kFeatureGrid.cells() + cell;
-        map[i] = static_cast<float>(road(channel, point));
-        bev[i] = static_cast<float>(fade * road(other_road ? channel + 100 : channel, shown));
+        const WavyRoad& road = (other_road ? other_roads_ : roads_)[channel];
+        bev[i] = static_cast<float>(fade * road.at(shown));
       }
     }
-    map_.assign(map);
     bev_.assign(bev);
-    standardise(map_);
     standardise(bev_);
     warp_all(bev_, Se2(), moved_.data(), kFeatureGrid.cols * bev_.lanes());
   }
@@ -75,24 +109,18 @@ class DemoCells {
   MatchedCells match() const { return {moved_, map_, view_, rig_, Se2()}; }
 
  private:
-  /// A sum of waves of 6 to 12 m, different in each channel.
-  static double road(int channel, const Eigen::Vector2d& point) {
-    double sum = 0.0;
-    for (int wave = 0; wave < 4; ++wave) {
-      const double angle_rad = 1.7 * channel + 0.9 * wave;
-      const double length_m = 6.0 + (channel * 5 + wave * 3) % 7;
-      const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
-      sum += std::sin(2.0 * kPi / length_m * direction.dot(point) + channel + 2.0 * wave);
-    }
-    return sum;
+  static Eigen::Vector2d place_of(int cell) {
+    return {kFeatureGrid.x_of_row(cell / kFeatureGrid.cols),
+            kFeatureGrid.y_of_col(cell % kFeatureGrid.cols)};
   }
 
-  static constexpr double kPi = 3.14159265358979323846;
   Rig rig_;
   ViewTable view_;
   CellFeatures bev_;
   CellFeatures map_;
   LaneBuffer moved_;
+  std::vector<WavyRoad> roads_;  ///< one for each channel
+  std::vector<WavyRoad> other_roads_;
 };
 
 }  // namespace bevloc

@@ -28,17 +28,11 @@ class SyntheticScene {
   /// Features on `grid` around a vehicle at `map_from_vehicle`, [channels, rows, cols].
   std::vector<float> seen_from(const Se2& map_from_vehicle, const BevGrid& grid) const {
     std::vector<float> features(static_cast<size_t>(channels_) * grid.cells());
+    const std::vector<Eigen::Vector2d> points = points_of(map_from_vehicle, grid);
     for (const Bump& bump : bumps_) {
       float* channel = features.data() + static_cast<size_t>(bump.channel) * grid.cells();
-      for (int row = 0; row < grid.rows; ++row) {
-        for (int col = 0; col < grid.cols; ++col) {
-          const Eigen::Vector2d point =
-              map_from_vehicle * Eigen::Vector2d(grid.x_of_row(row), grid.y_of_col(col));
-          const double dx = (point.x() - bump.x_m) / bump.x_sigma_m;
-          const double dy = (point.y() - bump.y_m) / bump.y_sigma_m;
-          channel[row * grid.cols + col] +=
-              static_cast<float>(bump.height * std::exp(-0.5 * (dx * dx + dy * dy)));
-        }
+      for (size_t cell = 0; cell < points.size(); ++cell) {
+        channel[cell] += static_cast<float>(height_at(points[cell], bump));
       }
     }
     return features;
@@ -73,6 +67,27 @@ class SyntheticScene {
   }
 
  private:
+  /// The cells of `grid` on the map, row by row.
+  static std::vector<Eigen::Vector2d> points_of(const Se2& map_from_vehicle, const BevGrid& grid) {
+    std::vector<Eigen::Vector2d> points;
+    points.reserve(grid.cells());
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int col = 0; col < grid.cols; ++col) {
+        points.push_back(map_from_vehicle *
+                         Eigen::Vector2d(grid.x_of_row(row), grid.y_of_col(col)));
+      }
+    }
+    return points;
+  }
+
+  static double height_at(const Eigen::Vector2d& point, const Bump& bump) {
+    constexpr double kNegligible = 30.0;  // exp(-30) is 1e-13; exp() would take most of the time
+    const double dx = (point.x() - bump.x_m) / bump.x_sigma_m;
+    const double dy = (point.y() - bump.y_m) / bump.y_sigma_m;
+    const double exponent = 0.5 * (dx * dx + dy * dy);
+    return exponent < kNegligible ? bump.height * std::exp(-exponent) : 0.0;
+  }
+
   int channels_;
   std::vector<Bump> bumps_;
 };
