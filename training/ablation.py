@@ -26,7 +26,7 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from training.losses import sample_1d
-from training.markdown import row
+from training.markdown import row, table
 from training.native import address, library
 from training.option_types import positive
 from training.solver import DEFINITION, Posterior, YawSignature, posterior_mean, yaw_scores
@@ -294,7 +294,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scenes", type=positive, default=200)
     scenes = first_scenes(parser.parse_args().scenes)
-    print("| variant | x m | y m | yaw deg | NLL |\n|---|---:|---:|---:|---:|")
+    print(table(("variant", "x m", "y m", "yaw deg", "NLL"), ()), end="")
     variants: tuple[type[Baseline], ...] = (Baseline, *VARIANTS)
     for variant in variants:
         print(table_row(variant(), scenes), flush=True)

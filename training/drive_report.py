@@ -16,6 +16,7 @@ from pathlib import Path
 from training.errors import run_program
 from training.evaluate import AXES, CLASSES, evaluate_model_file
 from training.export_onnx import SHIPPED_SOLVER
+from training.markdown import table
 from training.option_types import positive, writable
 from training.options import add_drive_options, drives_of
 from training.sampler_process import Drives
@@ -27,21 +28,21 @@ NAMES = ("longitudinal", "lateral", "yaw")
 FEWEST_SAMPLES = 24
 
 
-def table(before: dict[str, float], after: dict[str, float]) -> list[str]:
-    """The rows of a Markdown table of the figures of both models."""
-    rows = ["| figure | before | after |", "|---|---|---|"]
+def figures_table(before: dict[str, float], after: dict[str, float]) -> str:
+    """The figures of both models as a Markdown table."""
+    rows = []
 
-    def row(name: str, key: str, percent: bool = False) -> None:
+    def add(name: str, key: str, percent: bool = False) -> None:
         shown = [f"{100 * m[key]:.1f} %" if percent else f"{m[key]:.3f}" for m in (before, after)]
-        rows.append(f"| {name} | {shown[0]} | {shown[1]} |")
+        rows.append([name, *shown])
 
     for axis, name, unit in zip(AXES, NAMES, UNITS):
-        row(f"{name}, mean error, {unit}", f"{SHIPPED_SOLVER}_{axis}_mae")
-        row(f"{name}, 90 % below, {unit}", f"{SHIPPED_SOLVER}_{axis}_p90")
-        row(f"{name}, within 3 sigma", f"{SHIPPED_SOLVER}_{axis}_within_3_sigma", percent=True)
+        add(f"{name}, mean error, {unit}", f"{SHIPPED_SOLVER}_{axis}_mae")
+        add(f"{name}, 90 % below, {unit}", f"{SHIPPED_SOLVER}_{axis}_p90")
+        add(f"{name}, within 3 sigma", f"{SHIPPED_SOLVER}_{axis}_within_3_sigma", percent=True)
     for name in CLASSES:
-        row(f"IoU of {name}", f"iou_{name}")
-    return rows
+        add(f"IoU of {name}", f"iou_{name}")
+    return table(("figure", "before", "after"), rows)
 
 
 def report(
@@ -62,8 +63,7 @@ def report(
         f"- Before: `{before}`; after: `{after}`; int8, {SHIPPED_SOLVER}. Each sample has a random"
         " prior of up to 2 m, 1 m and 2 degrees.",
         "",
-        *table(metrics[0], metrics[1]),
-        "",
+        figures_table(metrics[0], metrics[1]),
     ]
     if used < FEWEST_SAMPLES:
         lines += [f"Fewer than {FEWEST_SAMPLES} samples: do not trust these figures.", ""]

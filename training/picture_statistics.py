@@ -17,6 +17,7 @@ import yaml
 from PIL import Image
 
 from training.data import SamplerStream
+from training.markdown import row, table
 from training.model import IMAGE_COLS, IMAGE_ROWS
 from training.option_types import positive
 
@@ -102,12 +103,11 @@ def main() -> None:
     if bool(options.real) != bool(options.rig):
         parser.error("--real and --rig: found one of them, wanted both or none")
     names = [field.name.replace("_", " ") for field in fields(Statistics)]
-    print("| pictures | " + " | ".join(names) + " |")
-    print("|---|" + "---:|" * len(names))
+    print(table(("pictures", *names), ()), end="")
 
     def print_row(name: str, pictures: np.ndarray) -> None:
         values = [f"{value:.2f}" for value in astuple(statistics_of(pictures))]
-        print(f"| {name} | " + " | ".join(values) + " |", flush=True)
+        print(row([name, *values]), flush=True)
 
     for nuisances in ("usual", "street"):
         print_row(f"{nuisances} samples", simulated(nuisances, "", options.samples))

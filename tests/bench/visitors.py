@@ -24,6 +24,7 @@ from evaluation.live.drive import free_port
 from tests.bench import clients
 from tests.bench.contention import Drive, daemon_program, drive
 from tests.bench.document import ROOT
+from training.markdown import table
 
 
 # The threads that a pose passes through, from the cameras' frames to the bus.
@@ -102,24 +103,23 @@ def ratios(runs: list[Run], references: list[Run]) -> list[float]:
 def table_of(runs: dict[str, list[Run]]) -> str:
     """One line per case, with medians of the rounds. The ratio is given with the least and the
     largest; framesets and frames are sums."""
-    lines = [
-        "| | busy, ms | ratio | waiting, ms | p50, ms | p99, ms | skipped | missed |",
-        "|---|---:|---:|---:|---:|---:|---:|---:|",
-    ]
+    header = ("", "busy, ms", "ratio", "waiting, ms", "p50, ms", "p99, ms", "skipped", "missed")
+    rows = []
     references = next(iter(runs.values()))
     for name, of_case in runs.items():
         ratio = ratios(of_case, references)
         drives = [one.drive for one in of_case]
-        lines.append(
-            f"| {name} | {median(one.busy_ms for one in of_case):.2f} |"
-            f" {median(ratio):.3f} ({min(ratio):.3f} to {max(ratio):.3f}) |"
-            f" {median(one.waiting_ms for one in of_case):.2f} |"
-            f" {median(one.p50_ms for one in drives):.1f} |"
-            f" {median(one.p99_ms for one in drives):.1f} |"
-            f" {sum(one.frames['skipped'] for one in drives) // 6} |"
-            f" {sum(one.frames['missed'] for one in drives)} |"
-        )
-    return "\n".join(lines)
+        rows.append([
+            name,
+            f"{median(one.busy_ms for one in of_case):.2f}",
+            f"{median(ratio):.3f} ({min(ratio):.3f} to {max(ratio):.3f})",
+            f"{median(one.waiting_ms for one in of_case):.2f}",
+            f"{median(one.p50_ms for one in drives):.1f}",
+            f"{median(one.p99_ms for one in drives):.1f}",
+            str(sum(one.frames["skipped"] for one in drives) // 6),
+            str(sum(one.frames["missed"] for one in drives)),
+        ])
+    return table(header, rows)
 
 
 def main() -> int:
@@ -134,7 +134,7 @@ def main() -> int:
     for _ in range(options.rounds):
         for case in CASES:
             runs[case.name].append(run(case, daemon, options.config, options.duration))
-    print(table_of(runs))
+    print(table_of(runs), end="")
     return 0
 
 

@@ -19,6 +19,7 @@ import numpy as np
 import torch
 
 from training.data import Batch, view_table
+from training.markdown import row, table
 from training.model import IMAGE_OFFSET
 from training.runtime import NativeNetwork
 from training.sources import simulator_batches
@@ -129,13 +130,13 @@ def main() -> None:
     if missing := what_is_missing():
         sys.exit(missing)
     batches = [golden_samples(), *simulator_batches(arguments.samples, 1)]
-    print("| onnxruntime's optimisation | output | within one step | equal | worst, steps |")
-    print("|---|---|---:|---:|---:|")
+    head = ("onnxruntime's optimisation", "output", "within one step", "equal", "worst, steps")
+    print(table(head, (), text_columns=2), end="")
     agree = True
     for level in LEVELS:
         for name, a in agreements(arguments.model, batches, level).items():
-            shares = f"{100 * a.share_within_one:.4f} % | {100 * a.share_equal:.2f} %"
-            print(f"| {level} | {name} | {shares} | {a.worst:.2f} |", flush=True)
+            within, equal = f"{100 * a.share_within_one:.4f} %", f"{100 * a.share_equal:.2f} %"
+            print(row([str(level), name, within, equal, f"{a.worst:.2f}"]), flush=True)
             agree &= a.share_within_one >= REQUIRED_SHARE
     sys.exit(0 if agree else f"wanted {100 * REQUIRED_SHARE} % within one step of each output")
 

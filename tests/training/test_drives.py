@@ -17,7 +17,7 @@ from PIL import Image
 from training.config import TrainingConfig
 from training.data import DriveStream, MixedStream
 from training.distributed import Share
-from training.drive_report import report, table
+from training.drive_report import figures_table, report
 from training.evaluate import AXES, CLASSES
 from training.options import parse_config
 from training.sampler_process import Drives, SamplerError
@@ -237,7 +237,7 @@ class DrivesTest(unittest.TestCase):
             ]
             return {key: value for key in keys} | {f"iou_{name}": value for name in CLASSES}
 
-        rows = table(metrics(0.25), metrics(0.125))
+        rows = figures_table(metrics(0.25), metrics(0.125))
         self.assertIn("| lateral, mean error, m | 0.250 | 0.125 |", rows)
         self.assertIn("| yaw, within 3 sigma | 25.0 % | 12.5 % |", rows)
 
