@@ -10,7 +10,6 @@
 #include <spdlog/spdlog.h>
 
 #include "can/messages/localizer_messages.h"
-#include "firmware/threads/clock_gap.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -28,19 +27,16 @@ constexpr Duration kEndPatience = std::chrono::seconds(60);
 constexpr Duration kEndPatience = std::chrono::seconds(4);
 #endif
 
-/// Forgets the pose when the clock had a gap, then publishes.
-void publish(Appliance& appliance, ClockGapDetector& gaps) {
-  if (gaps.look(appliance.clock())) appliance.estimation().note_clock_gap();
+void publish(Appliance& appliance) {
   appliance.estimation().tick(appliance.clock());
   appliance.heartbeats().can_out.beat();
 }
 
 void publish_on_cycle(Appliance& appliance, const std::atomic<bool>& running) {
-  ClockGapDetector gaps;
   Time due = appliance.clock().now();
   while (running) {
     appliance.clock().sleep_until(due);
-    publish(appliance, gaps);
+    publish(appliance);
     const Time now = appliance.clock().now();
     due += kBusCycle;
     // After a stall, continue from now instead of sending a burst.
@@ -232,7 +228,6 @@ void run_threads(Appliance& appliance, Realtime& realtime, const Companion* comp
 
 void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Companion* companion,
                   const Supervise& supervise) {
-  ClockGapDetector gaps;
   Time next_supervision = clock.now();
   for (bool running = true; running; clock.advance(kBusCycle)) {
     const Time now = clock.now();
@@ -242,7 +237,7 @@ void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Comp
     for (CaptureStage& stage : appliance.capture()) stage.step(Duration::zero());
     appliance.vision().step(clock, Duration::zero());
     appliance.heartbeats().vision.beat();
-    publish(appliance, gaps);
+    publish(appliance);
     if (companion != nullptr) companion->listen(Duration::zero());
     if (now >= next_supervision) {
       next_supervision = now + kSupervisionPeriod;

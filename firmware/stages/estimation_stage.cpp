@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "firmware/threads/clock_gap.h"
-
 namespace bevloc::firmware {
 namespace {
 
@@ -75,8 +73,7 @@ void EstimationStage::observe_reports(ReportObserver observer) {
 
 void EstimationStage::tick(const drivers::Clock& clock) {
   const Time now = clock.now();
-  suspended_ = clock.suspended();
-  watch_clock(now);
+  if (clock_gaps_.look(now, clock.suspended())) note_clock_gap();
   take_samples();
   take_reports(now);
   // After a gap the health still has the state of the discarded pose.
@@ -107,7 +104,6 @@ void EstimationStage::note_clock_gap() {
   estimator_.reset();
   stamps_.note_gap();
   gnss_lag_.note_gap();
-  last_tick_.reset();
   odometry_time_.reset();
   gnss_time_.reset();
   latest_report_.reset();
@@ -159,11 +155,6 @@ void EstimationStage::note_map_offset() {
     counters_.map_offset_cm[axis] =
         monitor.contradicts() ? static_cast<int>(std::lround(offset_cm)) : 0;
   }
-}
-
-void EstimationStage::watch_clock(Time now) {
-  if (last_tick_ && now - *last_tick_ > ClockGapDetector::kGap) note_clock_gap();
-  last_tick_ = now;
 }
 
 void EstimationStage::take_reports(Time now) {
@@ -307,7 +298,7 @@ void EstimationStage::publish(const std::optional<TrackedPose>& pose, Time pose_
   if (latest_report_ && latest_report_->match.evidence == Evidence::kGood) {
     report.correction = latest_report_->match.correction;
   }
-  if (clock.suspended() - suspended_ > can::kMaxPoseAge) take_back(report);
+  if (clock.suspended() - clock_gaps_.suspended() > can::kMaxPoseAge) take_back(report);
   // The thread may have stood still since `pose_time`.
   const Time now = clock.now();
   report.status = publisher_.publish(report, now);

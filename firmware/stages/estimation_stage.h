@@ -16,6 +16,7 @@
 #include "firmware/stages/vehicle_input_stage.h"
 #include "firmware/telemetry/latency_histogram.h"
 #include "firmware/telemetry/pose_snapshot.h"
+#include "firmware/threads/clock_gap.h"
 #include "pipeline/tracker/pose_estimator.h"
 
 namespace bevloc::firmware {
@@ -85,13 +86,11 @@ class EstimationStage {
 
   /// Takes all queued samples and reports, then publishes the pose predicted to the time at which
   /// it began. If the thread stood still or the machine was suspended meanwhile, it sends LOST,
-  /// because the pose is too old. Call it once per bus cycle.
+  /// because the pose is too old. After a gap between two calls (ClockGapDetector) it forgets the
+  /// pose and what is queued, because the vehicle may be elsewhere, and reports LOST with
+  /// Why::kClockGap. The clock counts as free-running until the next note_clock(), because a
+  /// suspension changes the offset to UTC. Call it once per bus cycle.
   void tick(const drivers::Clock& clock);
-
-  /// Forgets the pose and what is queued, because the vehicle may have been moved while the machine
-  /// was suspended. The next tick() reports LOST with Why::kClockGap. The clock counts as
-  /// free-running until the next note_clock(), because a suspension changes the offset to UTC.
-  void note_clock_gap();
 
   /// Publishes the state LOST without a pose, so that consumers need not wait for a timeout. Call
   /// it after the last tick().
@@ -110,7 +109,7 @@ class EstimationStage {
   void take_reports(Time now);
   void add_correction(const VisionReport& report);
   void note_map_offset();
-  void watch_clock(Time now);
+  void note_clock_gap();
   void watch_gnss_lag();
   HealthInputs health_inputs(const std::optional<TrackedPose>& pose, Time now) const;
   void update_health(const std::optional<TrackedPose>& pose, Time now);
@@ -151,8 +150,7 @@ class EstimationStage {
   bool withheld_ = false;  ///< the latest pose was valid, but was not sent
   StampWatch stamps_;
   GnssLagWatch gnss_lag_;
-  std::optional<Time> last_tick_;
-  Duration suspended_{};    ///< Clock::suspended() when the latest tick() began
+  ClockGapDetector clock_gaps_;
   bool clock_gap_ = false;  ///< no correction was accepted since the latest gap
   EstimationCounters counters_;
 };

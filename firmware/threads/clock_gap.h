@@ -1,7 +1,7 @@
 // Detects that the machine was suspended or that the process did not run.
 #pragma once
 
-#include "drivers/clock/clock.h"
+#include "common/time.h"
 
 namespace bevloc::firmware {
 
@@ -13,16 +13,18 @@ class ClockGapDetector {
   /// The shortest gap, which is thirty bus cycles. Odometry bridges shorter ones.
   static constexpr Duration kGap = std::chrono::milliseconds(300);
 
-  /// Call it once per bus cycle. Returns whether there was a gap since the previous call.
-  bool look(const drivers::Clock& clock) {
-    const Time now = clock.now();
-    const Duration suspended = clock.suspended();
+  /// Call it once per bus cycle, with Clock::suspended(). Returns whether there was a gap since the
+  /// previous call.
+  bool look(Time now, Duration suspended) {
     const bool gap = looked_ && (now - now_) + (suspended - suspended_) > kGap;
     looked_ = true;
     now_ = now;
     suspended_ = suspended;
     return gap;
   }
+
+  /// Clock::suspended() at the latest look.
+  Duration suspended() const { return suspended_; }
 
  private:
   bool looked_ = false;

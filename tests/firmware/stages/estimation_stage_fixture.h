@@ -48,7 +48,9 @@ class EstimationStageTest : public testing::Test {
       push_samples();
       const bool is_due = now_.time_since_epoch() % report_period_ == Duration::zero();
       if (vision_ && is_due) push_report(now_ - std::chrono::milliseconds(40));
-      tick(drivers::VirtualClock(now_));
+      drivers::VirtualClock clock(now_);
+      clock.suspend(suspended_);
+      tick(clock);
     }
   }
 
@@ -112,6 +114,7 @@ class EstimationStageTest : public testing::Test {
       predictions_};
   evaluation::PoseReader reader_{{}, kMapOrigin};
   Time now_{std::chrono::milliseconds(1000)};
+  Duration suspended_{};  ///< how long the machine was suspended
   Se2 vision_error_;
   double gnss_north_m_ = 1.0;
   double gnss_sigma_m_ = 1.0;
