@@ -26,8 +26,8 @@ struct DaemonHost {
 /// Runs until `stop` returns true. While the ignition is off, the appliance is not running: the
 /// daemon waits in standby and starts it when the ignition returns. Fails if the map, the model,
 /// the bus or a GPIO line cannot be opened, or if at a start of the appliance a file is not the one
-/// in the manifest. A camera that fails is no error: CaptureStage restarts it. If the disk takes no
-/// recording, or the live page cannot be served, logs an error and goes on.
+/// in the manifest. A camera that fails is no error: CaptureStage restarts it. If no recording can
+/// be written, or the live page cannot be served, the daemon logs an error and goes on.
 Status run_daemon(const Config& config, const Rig& rig, const DaemonHost& host);
 
 /// Sets the least severe level that is logged.

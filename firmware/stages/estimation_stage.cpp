@@ -263,8 +263,8 @@ void EstimationStage::count_loss(WhyMask why) {
   ++counters_.lost;
 }
 
-/// Counts a loss when a valid pose is withheld. Does not count it again while the next poses are
-/// withheld, too.
+/// Counts a loss when a valid pose is withheld. If several poses in a row are withheld, that is one
+/// loss.
 void EstimationStage::note_sent(const can::LocalizerStatus& sent) {
   counters_.time_source = sent.time_source;
   const bool withheld = health_.pose_valid() && !claims_pose(sent.state);

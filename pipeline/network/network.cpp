@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/ranges.h>
+
 #include "common/number_text.h"
 #include "pipeline/network/model/load_error.h"
 #include "pipeline/network/model/lowering.h"
@@ -49,9 +51,9 @@ std::vector<Contract> output_contracts() {
 }
 
 std::string names_of(const std::vector<nn::Port>& ports) {
-  std::string names;
-  for (const nn::Port& port : ports) names += (names.empty() ? "" : ", ") + port.name;
-  return names.empty() ? "none" : names;
+  std::vector<std::string_view> names;
+  for (const nn::Port& port : ports) names.push_back(port.name);
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 void check_ports(const std::vector<nn::Port>& ports, const std::vector<Contract>& contracts,

@@ -4,10 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <string>
 #include <utility>
+#include <vector>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pipeline/solver/banded_matcher.h"
 #include "pipeline/solver/grid_limits.h"
@@ -164,13 +164,12 @@ double count_of(const HypothesisGrid& hypotheses) {
 }
 
 Result<SolverKind> solver_kind_from(std::string_view name) {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const auto& [candidate, kind] : kNames) {
     if (candidate == name) return kind;
-    known += known.empty() ? "" : ", ";
-    known += candidate;
+    known.push_back(candidate);
   }
-  return fail("solver: found \"{}\", wanted one of {}", name, known);
+  return fail("solver: found \"{}\", wanted one of {}", name, fmt::join(known, ", "));
 }
 
 std::string_view name_of(SolverKind kind) {

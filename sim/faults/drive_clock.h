@@ -15,7 +15,7 @@ double drive_time_s(double elapsed_s, std::span<const Fault> faults);
 /// Whether the appliance stood still at this time, while its clock went on.
 bool is_in_clock_gap(double elapsed_s, std::span<const Fault> faults);
 
-/// Returns when the last gap that has begun by this time ends, or 0 if no gap has begun.
+/// The end of the last gap that begins before or at this time, or 0 if no gap does.
 double clock_gaps_end_s(double elapsed_s, std::span<const Fault> faults);
 
 /// Converts the times of the faults from the appliance's clock to the time of the drive.

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "tests/support/cell_places.h"
+
 namespace bevloc::fuzz {
 namespace {
 
@@ -82,9 +84,7 @@ void fill_bumps(unsigned seed, const Se2& map_from_vehicle, const BevGrid& grid,
       const Eigen::Vector2d at(uniform(random, -0.7, 0.7) * grid.x_range_m(),
                                uniform(random, -0.7, 0.7) * grid.y_range_m());
       for (int i = 0; i < grid.cells(); ++i) {
-        const Eigen::Vector2d point =
-            map_from_vehicle *
-            Eigen::Vector2d(grid.x_of_row(i / grid.cols), grid.y_of_col(i % grid.cols));
+        const Eigen::Vector2d point = map_from_vehicle * test::place_of(grid, i);
         features[first + i] +=
             static_cast<float>(std::exp(-0.5 * (point - at).squaredNorm() / (width_m * width_m)));
       }

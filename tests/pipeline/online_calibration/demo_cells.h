@@ -10,6 +10,7 @@
 #include "pipeline/preprocessing/network_camera.h"
 #include "pipeline/solver/feature_warp.h"
 #include "pipeline/solver/standardise.h"
+#include "tests/support/cell_places.h"
 
 namespace bevloc {
 
@@ -67,7 +68,7 @@ class DemoCells {
       roads_.emplace_back(channel);
       other_roads_.emplace_back(channel + 100);
       for (int cell = 0; cell < kFeatureGrid.cells(); ++cell) {
-        map.push_back(static_cast<float>(roads_[channel].at(place_of(cell))));
+        map.push_back(static_cast<float>(roads_[channel].at(test::place_of(kFeatureGrid, cell))));
       }
     }
     map_.assign(map);
@@ -82,7 +83,7 @@ class DemoCells {
   void show(const ExtrinsicErrors& errors, CameraMask blind = {}) {
     std::vector<float> bev(kChannels * static_cast<size_t>(kFeatureGrid.cells()));
     for (int cell = 0; cell < kFeatureGrid.cells(); ++cell) {
-      const Eigen::Vector2d point = place_of(cell);
+      const Eigen::Vector2d point = test::place_of(kFeatureGrid, cell);
       Eigen::Vector2d shown = point;
       bool other_road = false;
       for (size_t slot = 0; slot < kViewSlots; ++slot) {
@@ -109,11 +110,6 @@ class DemoCells {
   MatchedCells match() const { return {moved_, map_, view_, rig_, Se2()}; }
 
  private:
-  static Eigen::Vector2d place_of(int cell) {
-    return {kFeatureGrid.x_of_row(cell / kFeatureGrid.cols),
-            kFeatureGrid.y_of_col(cell % kFeatureGrid.cols)};
-  }
-
   Rig rig_;
   ViewTable view_;
   CellFeatures bev_;

@@ -8,6 +8,7 @@
 #include "common/se2.h"
 #include "pipeline/bev_grid.h"
 #include "pipeline/solver/feature_view.h"
+#include "tests/support/cell_places.h"
 
 namespace bevloc {
 
@@ -71,11 +72,8 @@ class SyntheticScene {
   static std::vector<Eigen::Vector2d> points_of(const Se2& map_from_vehicle, const BevGrid& grid) {
     std::vector<Eigen::Vector2d> points;
     points.reserve(grid.cells());
-    for (int row = 0; row < grid.rows; ++row) {
-      for (int col = 0; col < grid.cols; ++col) {
-        points.push_back(map_from_vehicle *
-                         Eigen::Vector2d(grid.x_of_row(row), grid.y_of_col(col)));
-      }
+    for (int cell = 0; cell < grid.cells(); ++cell) {
+      points.push_back(map_from_vehicle * test::place_of(grid, cell));
     }
     return points;
   }

@@ -7,6 +7,7 @@
 
 #include "pipeline/preprocessing/network_camera.h"
 #include "tests/pipeline/preprocessing/surround_rig.h"
+#include "tests/support/cell_places.h"
 
 namespace bevloc {
 namespace {
@@ -52,8 +53,8 @@ TEST_F(ViewTableTest, WeightsOfACellSumToOneOrAreAllZero) {
 TEST_F(ViewTableTest, EntriesLieWhereTheNetworkCameraSeesTheCell) {
   int checked = 0;
   for (int cell = 0; cell < kCells; ++cell) {
-    const Eigen::Vector3d centre(kFeatureGrid.x_of_row(cell / kFeatureGrid.cols),
-                                 kFeatureGrid.y_of_col(cell % kFeatureGrid.cols), 0.0);
+    const Eigen::Vector2d place = test::place_of(kFeatureGrid, cell);
+    const Eigen::Vector3d centre(place.x(), place.y(), 0.0);
     for (const int camera : cameras_of(table_, cell)) {
       double share = 0.0;
       Eigen::Vector2d feature = Eigen::Vector2d::Zero();
@@ -84,8 +85,7 @@ TEST_F(ViewTableTest, SixCamerasSeeNearlyEverythingButARingAroundTheCar) {
   int far_cells = 0;
   int far_seen = 0;
   for (int cell = 0; cell < kCells; ++cell) {
-    const double distance_m = std::hypot(kFeatureGrid.x_of_row(cell / kFeatureGrid.cols),
-                                         kFeatureGrid.y_of_col(cell % kFeatureGrid.cols));
+    const double distance_m = test::place_of(kFeatureGrid, cell).norm();
     const bool seen = weight_sum(table_, cell) > 0.0F;
     EXPECT_FALSE(seen && distance_m < 1.0) << "a camera sees the ground under the car";
     if (distance_m < 8.0 || distance_m > 25.0) continue;
