@@ -1,6 +1,7 @@
 #include "command/command_list.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -30,13 +31,24 @@ bool has_command(const CLI::App& app, const std::string& word) {
               .empty();
 }
 
+std::vector<const CLI::App*> CommandList::subcommands_of(
+    std::initializer_list<const CLI::App*> parents) {
+  std::vector<const CLI::App*> all;
+  for (const CLI::App* parent : parents) {
+    std::ranges::copy(parent->get_subcommands({}), std::back_inserter(all));
+  }
+  return all;
+}
+
 int CommandList::run(CLI::App& app, int argc, char** argv) const {
   if (const auto message = unknown_command(app, argc, argv)) {
     std::fputs(message->c_str(), stderr);
     return kBadInput;
   }
   if (const auto ended = parse_options(app, argc, argv)) return *ended;
-  const auto entry = std::ranges::find_if(entries_, [](const Entry& e) { return e.chosen(); });
+  const auto entry = std::ranges::find_if(entries_, [](const Entry& candidate) {
+    return std::ranges::any_of(candidate.subcommands, &CLI::App::parsed);
+  });
   if (entry == entries_.end()) return kBadInput;
   const Result<int> code = run_without_throwing(entry->run);
   const Status printed = code ? flush_output() : tl::unexpected(code.error());

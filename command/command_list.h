@@ -1,8 +1,10 @@
 // The table of the commands of `bevloc`, in which one line registers a command.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -26,9 +28,8 @@ bool has_command(const CLI::App& app, const std::string& word);
 
 /// Holds the commands and runs the one that the command line names. A command is a class with
 ///
-///     void declare(CLI::App& parent);       // or more parents; options, help, examples
-///     bool chosen() const;                  // whether the parsed command line names it
-///     Status run();                         // or Result<Verdict>, or Result<int>: an exit code
+///     void declare(CLI::App& parent);  // or more parents; adds one subcommand or more
+///     Status run();                    // or Result<Verdict>, or Result<int>: an exit code
 ///
 /// One thread.
 class CommandList {
@@ -50,16 +51,23 @@ class CommandList {
 
  private:
   struct Entry {
-    std::function<bool()> chosen;
+    std::vector<const CLI::App*> subcommands;  ///< the command runs if one of them is parsed
     std::function<Result<int>()> run;
   };
 
   template <typename Command, typename... Parents>
   void keep(std::shared_ptr<Command> command, Parents&... parents) {
+    const auto before = subcommands_of({&parents...});
     command->declare(parents...);
-    entries_.push_back(
-        {[command] { return command->chosen(); }, [command] { return exit_code(command->run()); }});
+    auto declared = subcommands_of({&parents...});
+    std::erase_if(declared, [&before](const CLI::App* subcommand) {
+      return std::ranges::find(before, subcommand) != before.end();
+    });
+    entries_.push_back({std::move(declared), [command] { return exit_code(command->run()); }});
   }
+
+  static std::vector<const CLI::App*> subcommands_of(
+      std::initializer_list<const CLI::App*> parents);
 
   static Result<int> exit_code(const Status& status) {
     return status ? Result<int>(0) : Result<int>(tl::unexpected(status.error()));

@@ -12,4 +12,10 @@ std::string dump_json(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+/// The content of a JSON file: indented, with a newline at its end.
+template <typename Json>
+std::string json_document(const Json& json) {
+  return dump_json(json, 2) + "\n";
+}
+
 }  // namespace bevloc

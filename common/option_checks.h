@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "common/number_text.h"
-#include "common/output_check.h"
+#include "common/output_file.h"
 
 namespace bevloc {
 

@@ -8,12 +8,14 @@
 
 namespace bevloc {
 
-/// Writes a new file beside `path`, flushes it to the disk and renames it over `path`. Fails if
+/// Writes a new file beside `path`, flushes it to the disk and renames it over `path`. The new file
+/// has the mode of the earlier one, and its owner and group where this user may set them. Fails if
 /// `path` exists and is not a file.
 Status replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// Like replace_file(), but first keeps the earlier file under the first free name of PATH.bak,
-/// PATH.bak2 and so on. If there is no earlier file, it makes no backup.
+/// PATH.bak2 and so on, with the same mode and owner. If there is no earlier file, it makes no
+/// backup.
 Status replace_file_with_backup(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace bevloc

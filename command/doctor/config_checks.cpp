@@ -148,10 +148,13 @@ Findings check_gpio_lines(const Machine& machine, const Config& config) {
   return findings;
 }
 
+/// The kind of an interface with a controller, as `ip` calls it.
+constexpr const char* kController = "can";
+
 /// The part of `ip -details -json link show` that the doctor reads.
 struct CanLink {
   bool up = false;
-  bool is_virtual = false;
+  std::string kind;   ///< "can" for a controller, "vcan", "vxcan"; some old drivers show none
   std::string state;  ///< ERROR-ACTIVE, ERROR-PASSIVE, BUS-OFF, STOPPED
   int64_t bit_rate = 0;
   int64_t restart_ms = 0;
@@ -168,7 +171,7 @@ std::optional<CanLink> parse_link(const std::string& text) {
     can.up = std::ranges::find(link["flags"], "UP") != link["flags"].end();
   }
   const auto info = link.value("linkinfo", nlohmann::json::object());
-  can.is_virtual = info.value("info_kind", "") == "vcan";
+  can.kind = info.value("info_kind", "");
   const auto data = info.value("info_data", nlohmann::json::object());
   can.state = data.value("state", "");
   can.restart_ms = data.value("restart_ms", 0);
@@ -182,7 +185,7 @@ std::optional<CanLink> parse_link(const std::string& text) {
 /// Returns the command that starts an interface. The kernel keeps the bit rate of an interface that
 /// is down. If there is none, the user must give it, because a wrong bit rate disturbs the bus.
 std::string start_command(const std::string& name, const CanLink& link) {
-  const bool is_ready = link.is_virtual || link.bit_rate > 0;
+  const bool is_ready = link.kind != kController || link.bit_rate > 0;
   return fmt::format("sudo ip link set {} up{}", name,
                      is_ready ? ""
                               : " type can bitrate BITRATE restart-ms 100   # BITRATE is that of "
@@ -194,7 +197,12 @@ Findings judge_link(const std::string& name, const CanLink& link) {
     return {{Level::kProblem, name, "found an interface that is down", "an interface that is up",
              start_command(name, link)}};
   }
-  if (link.is_virtual) return {ok(name, "up, virtual: no other machine hears it")};
+  if (link.kind == "vcan" || link.kind == "vxcan") {
+    return {ok(name, "up, virtual: no other machine hears it")};
+  }
+  if (link.kind != kController) {
+    return {ok(name, "up; its driver shows neither bit rate nor errors")};
+  }
   Findings findings;
   const std::string counters =
       fmt::format("{} bit/s, {}, error counters tx {} rx {}", link.bit_rate, link.state,
@@ -285,8 +293,9 @@ Findings check_realtime(const Machine& machine, const Config& config) {
 
 Findings check_can_interface(const Machine& machine, const Config& config) {
   if (config.can.driver == CanDriver::kMock) return {ok("can", "mock: a bus inside the process")};
-  Findings findings{check_module(machine, "can", Level::kProblem),
-                    check_module(machine, "can_raw", Level::kProblem)};
+  Findings findings{check_module_on_demand(machine, "can"),
+                    check_module_on_demand(machine, "can_raw")};
+  constexpr const char* kListInterfaces = "ip -details link show type can";
   const std::string& name = config.can.interface;
   if (name.starts_with("vcan")) {
     findings.push_back(check_module(machine, "vcan", Level::kProblem));
@@ -298,7 +307,12 @@ Findings check_can_interface(const Machine& machine, const Config& config) {
                         is_virtual ? fmt::format("sudo ip link add {0} type vcan && sudo ip link "
                                                  "set {0} up",
                                                  name)
-                                   : std::string("ip -details link show type can")});
+                                   : std::string(kListInterfaces)});
+    return findings;
+  }
+  if (!machine.is_can_interface(name)) {
+    findings.push_back({Level::kProblem, name, "found an interface that is no CAN interface",
+                        "the name of a CAN interface in can.interface", kListInterfaces});
     return findings;
   }
   const auto text = machine.run({"ip", "-details", "-json", "link", "show", name});

@@ -57,7 +57,6 @@ void DoctorCommand::declare(CLI::App& app) {
                   "  bevloc doctor --config {}\n"
                   "  bevloc doctor --json",
                   simulation_ != nullptr ? "config/demo.yaml" : "my_config.yaml"));
-  doctor->callback([this] { chosen_ = true; });
 }
 
 Result<int> DoctorCommand::run() const {

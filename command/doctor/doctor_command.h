@@ -22,14 +22,12 @@ class DoctorCommand {
   explicit DoctorCommand(const firmware::SimulationReader* simulation) : simulation_(simulation) {}
 
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
 
   /// Returns the exit code: 0 if all is ok, 1 for warnings, 2 for problems.
   Result<int> run() const;
 
  private:
   const firmware::SimulationReader* simulation_;
-  bool chosen_ = false;
   bool json_ = false;
   std::string config_file_;
 };

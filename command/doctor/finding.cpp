@@ -60,7 +60,7 @@ std::string to_json(const Findings& findings) {
   }
   const nlohmann::ordered_json all = {{"worst", name_of_level(worst_of(findings))},
                                       {"findings", std::move(list)}};
-  return dump_json(all, 2) + "\n";
+  return json_document(all);
 }
 
 }  // namespace bevloc::command

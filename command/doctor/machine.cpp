@@ -42,6 +42,12 @@ std::vector<std::string> Machine::names_in(const std::filesystem::path& folder) 
   return names;
 }
 
+bool Machine::is_can_interface(const std::string& name) const {
+  // ARPHRD_CAN of linux/if_arp.h as text.
+  constexpr const char* kCanDevice = "280";
+  return line_of("/sys/class/net/" + name + "/type") == kCanDevice;
+}
+
 ProcessLimits LinuxMachine::limits() const {
   ProcessLimits limits;
   rlimit limit{};

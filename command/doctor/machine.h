@@ -51,6 +51,8 @@ class Machine {
   std::string text_of(const std::filesystem::path& path) const;
   /// Returns the names in a folder, sorted, or none if it cannot be read.
   std::vector<std::string> names_in(const std::filesystem::path& folder) const;
+  /// Whether this is the name of a CAN interface, real or virtual.
+  bool is_can_interface(const std::string& name) const;
 };
 
 /// The machine that this process runs on.

@@ -1,5 +1,6 @@
 #include "command/doctor/machine_checks.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <sstream>
@@ -65,6 +66,31 @@ std::map<std::string, std::string> properties_of(const std::string& text) {
     if (equals != std::string::npos) properties[line.substr(0, equals)] = line.substr(equals + 1);
   }
   return properties;
+}
+
+/// Whether a list of this kernel's modules, such as modules.builtin, has a module. The names of the
+/// files have '-' in some places where the name of the module has '_'.
+bool lists_module(const Machine& machine, const std::string& list, const std::string& module) {
+  const std::string release = machine.line_of("/proc/sys/kernel/osrelease");
+  std::string files = machine.text_of("/lib/modules/" + release + "/" + list);
+  std::ranges::replace(files, '-', '_');
+  return files.find("/" + module + ".ko") != std::string::npos;
+}
+
+/// The finding about a unit that systemd has not loaded.
+Finding unloaded_unit(const std::string& load_state) {
+  if (load_state == "not-found") {
+    return {Level::kWarning, "unit", "found no bevlocd.service", "the unit in the folder systemd/",
+            "sudo install -m 644 systemd/bevlocd.service /etc/systemd/system/ && sudo systemctl "
+            "daemon-reload"};
+  }
+  if (load_state == "masked") {
+    return {Level::kWarning, "unit", "found a masked unit, which nothing can start",
+            "a unit without a mask", "sudo systemctl unmask bevlocd"};
+  }
+  return {Level::kProblem, "unit",
+          fmt::format("found a unit that systemd refuses ({})", load_state),
+          "a unit that systemd loads", "systemd-analyze verify bevlocd.service"};
 }
 
 std::string mib(int64_t bytes) {
@@ -136,11 +162,7 @@ Findings check_unit(const Machine& machine) {
              "systemd, which starts bevlocd again after a failure", "systemctl status"}};
   }
   auto state = properties_of(*text);
-  if (state["LoadState"] != "loaded") {
-    return {{Level::kWarning, "unit", "found no bevlocd.service", "the unit in the folder systemd/",
-             "sudo install -m 644 systemd/bevlocd.service /etc/systemd/system/ && sudo systemctl "
-             "daemon-reload"}};
-  }
+  if (state["LoadState"] != "loaded") return {unloaded_unit(state["LoadState"])};
   const std::string now = fmt::format("{} ({}), {} restarts", state["ActiveState"],
                                       state["SubState"], state["NRestarts"]);
   Findings findings;
@@ -163,11 +185,15 @@ Findings check_unit(const Machine& machine) {
 Finding check_module(const Machine& machine, const std::string& module, Level if_missing) {
   const std::string part = "module " + module;
   if (machine.exists("/sys/module/" + module)) return ok(part, "loaded");
-  const std::string release = machine.line_of("/proc/sys/kernel/osrelease");
-  std::string file = machine.text_of("/lib/modules/" + release + "/modules.builtin");
-  if (file.find("/" + module + ".ko") != std::string::npos) return ok(part, "built in");
+  if (lists_module(machine, "modules.builtin", module)) return ok(part, "built in");
   return {if_missing, part, "found a module that is not loaded", "a loaded module",
           "sudo modprobe " + module};
+}
+
+Finding check_module_on_demand(const Machine& machine, const std::string& module) {
+  Finding finding = check_module(machine, module, Level::kProblem);
+  if (finding.level == Level::kOk || !lists_module(machine, "modules.dep", module)) return finding;
+  return ok(finding.part, "not loaded; the kernel loads it when it is used first");
 }
 
 }  // namespace bevloc::command

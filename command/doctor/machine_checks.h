@@ -16,5 +16,8 @@ Findings check_unit(const Machine& machine);
 
 /// Checks that a kernel module is loaded or built in.
 Finding check_module(const Machine& machine, const std::string& module, Level if_missing);
+/// Checks whether a module is loaded, built in, or there for the kernel, which loads it when it is
+/// used first. It is a problem if the module is missing.
+Finding check_module_on_demand(const Machine& machine, const std::string& module);
 
 }  // namespace bevloc::command

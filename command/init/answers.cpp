@@ -31,8 +31,9 @@ std::string cameras_text(const Answers& answers) {
            "  rate_hz: 10\n";
   }
   std::string text = fmt::format(
-      "# The ids stay the same when plugs change; `bevlocd --config FILE --check-config` lists "
-      "them.\n"
+      "# The ids stay the same after a restart. An id with a serial number stays with its camera "
+      "when plugs\n"
+      "# change; an id with a path or a port belongs to the plug.\n"
       "# Cameras without a trigger expose at different times: set tolerance_ms to a little less "
       "than one frame\n"
       "# period, at most 50.\n"

@@ -57,6 +57,20 @@ std::string id_from(const std::vector<OfferedCamera>& cameras, const std::string
   return number >= 1 && number <= cameras.size() ? cameras[number - 1].id : answer;
 }
 
+/// Writes the configuration. The daemon runs as another user, so all users may read a new file,
+/// whatever the umask is.
+Status write_configuration(const std::filesystem::path& file, std::string_view text) {
+  using std::filesystem::perms;
+  std::error_code error;
+  const bool is_new = !std::filesystem::exists(file, error);
+  if (Status written = replace_file_with_backup(file, text); !written || !is_new) return written;
+  std::filesystem::permissions(file, perms::group_read | perms::others_read,
+                               std::filesystem::perm_options::add, error);
+  if (!error) return {};
+  return fail("{}: found no way to let all users read this file ({}), wanted one; use chmod a+r",
+              file.string(), error.message());
+}
+
 }  // namespace
 
 void InitCommand::declare(CLI::App& app) {
@@ -87,7 +101,6 @@ void InitCommand::declare(CLI::App& app) {
       "{}"
       "  bevloc init --cameras v4l2 --rig rig.yaml --map town.osm --can can0",
       simulation_ != nullptr ? "  bevloc init --yes --out my_config.yaml\n" : ""));
-  init->callback([this] { chosen_ = true; });
 }
 
 Result<std::string> InitCommand::driver(const Offers& offers, Dialog& dialog) const {
@@ -210,7 +223,7 @@ Result<Verdict> InitCommand::run(const Offers& offers, Dialog& dialog) const {
   if (!known) return tl::unexpected(known.error());
   const std::filesystem::path folder = std::filesystem::absolute(out_).parent_path();
   const std::string text = configuration_text(*known, folder);
-  if (Status written = replace_file_with_backup(out_, text); !written) {
+  if (Status written = write_configuration(out_, text); !written) {
     return tl::unexpected(written.error());
   }
   const auto config = firmware::load_config(out_, simulation_);

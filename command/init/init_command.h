@@ -21,7 +21,6 @@ class InitCommand {
   explicit InitCommand(const firmware::SimulationReader* simulation) : simulation_(simulation) {}
 
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
 
   /// Runs the command. The verdict is bad if the configuration was written but --check-config would
   /// refuse it.
@@ -37,7 +36,6 @@ class InitCommand {
   Result<std::string> can(const Offers& offers, Dialog& dialog, const std::string& driver) const;
 
   const firmware::SimulationReader* simulation_;
-  bool chosen_ = false;
   bool yes_ = false;
   bool force_ = false;
   std::string out_ = "bevlocd.yaml";

@@ -1,6 +1,6 @@
 #include "command/init/offers.h"
 
-#include <array>
+#include <algorithm>
 #include <cstdlib>
 
 #include "drivers/camera/v4l2/device_finder.h"
@@ -11,33 +11,43 @@
 namespace bevloc::command {
 namespace {
 
-/// Returns a name of a node that changes neither with the order in which cameras are plugged in nor
-/// with a restart.
-std::string stable_id(const drivers::v4l2::VideoNode& node) {
-  if (!node.links.empty()) return node.links.front();
-  for (const std::string* id : {&node.serial, &node.port, &node.card}) {
-    if (!id->empty()) return *id;
+using drivers::v4l2::VideoNode;
+
+/// Returns the nodes that deliver images. Further nodes of a camera do not.
+std::vector<VideoNode> image_nodes(const Machine& machine) {
+  auto nodes = drivers::v4l2::list_video_nodes({machine.real("/sys"), machine.real("/dev")});
+  std::erase_if(nodes, [](const VideoNode& node) { return node.index != 0; });
+  return nodes;
+}
+
+/// Returns a name of a node that does not change with a restart. If its serial number is that of no
+/// other node, the name stays with the camera when plugs change. Otherwise it belongs to the plug.
+std::string stable_id(const VideoNode& node, bool has_own_serial) {
+  // Names in /dev/v4l/by-id begin so. Those in by-path begin with the bus of the USB controller.
+  const auto is_by_id = [](const std::string& link) { return link.starts_with("usb-"); };
+  if (has_own_serial) {
+    const auto by_id = std::ranges::find_if(node.links, is_by_id);
+    return by_id != node.links.end() ? *by_id : node.serial;
   }
-  return "";
+  const auto by_path = std::ranges::find_if_not(node.links, is_by_id);
+  if (by_path != node.links.end()) return *by_path;
+  return node.port.empty() ? node.card : node.port;
 }
 
 }  // namespace
 
 Offers offers_of(const Machine& machine, const std::vector<std::string>& libcamera_ids) {
   Offers offers;
-  for (const auto& node :
-       drivers::v4l2::list_video_nodes({machine.real("/sys"), machine.real("/dev")})) {
-    const std::string id = stable_id(node);
-    // Further nodes of a camera deliver no images.
-    if (node.index == 0 && !id.empty()) offers.v4l2.push_back({id, node.card});
+  const std::vector<VideoNode> nodes = image_nodes(machine);
+  for (const VideoNode& node : nodes) {
+    const bool has_own_serial =
+        !node.serial.empty() && std::ranges::count(nodes, node.serial, &VideoNode::serial) == 1;
+    const std::string id = stable_id(node, has_own_serial);
+    if (!id.empty()) offers.v4l2.push_back({id, node.card});
   }
   for (const std::string& id : libcamera_ids) offers.libcamera.push_back({id, "libcamera"});
-  // ARPHRD_CAN of linux/if_arp.h as text.
-  constexpr const char* kCanDevice = "280";
   for (const std::string& name : machine.names_in("/sys/class/net")) {
-    if (machine.line_of("/sys/class/net/" + name + "/type") == kCanDevice) {
-      offers.can_interfaces.push_back(name);
-    }
+    if (machine.is_can_interface(name)) offers.can_interfaces.push_back(name);
   }
   return offers;
 }

@@ -40,36 +40,37 @@ void print_left_out(const can::Dbc& dbc) {
 }  // namespace
 
 void ListenCommand::declare(CLI::App& app) {
-  app_ = app.add_subcommand("listen", "Decode a CAN bus, live or from a candump log");
-  app_->footer(
+  auto* listen = app.add_subcommand("listen", "Decode a CAN bus, live or from a candump log");
+  listen->footer(
       "Examples:\n"
       "  bevloc listen can0                         bevloc's messages on an interface\n"
       "  bevloc listen --dbc vehicle.dbc can.log    a log of another bus, too\n"
       "  bevloc listen --message LOC_Status --json can.log\n"
       "  candump -L can0 | bevloc listen -");
-  app_->add_option("SOURCE", source_, "CAN interface, candump log, or - for standard input")
+  listen->add_option("SOURCE", source_, "CAN interface, candump log, or - for standard input")
       ->required();
   // Each --dbc takes one value, because a further one is the SOURCE.
-  app_->add_option("--dbc", dbc_files_,
+  listen
+      ->add_option("--dbc", dbc_files_,
                    "DBC file, may be repeated; bevloc's own messages are known without one")
       ->allow_extra_args(false);
-  app_->add_option("--message", messages_, "Print this message only, may be repeated")
+  listen->add_option("--message", messages_, "Print this message only, may be repeated")
       ->allow_extra_args(false);
-  app_->add_flag("--bad", only_bad_,
-                 "Print only frames that fail the end-to-end check or follow lost ones");
-  auto* quiet = app_->add_flag("--quiet", quiet_, "Print the totals only");
-  app_->add_flag(
+  listen->add_flag("--bad", only_bad_,
+                   "Print only frames that fail the end-to-end check or follow lost ones");
+  auto* quiet = listen->add_flag("--quiet", quiet_, "Print the totals only");
+  listen->add_flag(
       "--json", json_,
       "Print one JSON object per frame and no totals; with --quiet, one object with the totals");
-  app_->add_option("--count", count_, "End after this number of printed frames")
+  listen->add_option("--count", count_, "End after this number of printed frames")
       ->check(whole_number())
       ->excludes(quiet);
-  app_->add_option("--duration", duration_s_, "End after this number of seconds")
+  listen->add_option("--duration", duration_s_, "End after this number of seconds")
       ->check(number_between(0.001, 1e9));
   const CLI::Range base_range(uint32_t{can::BaseIds::kFirst}, uint32_t{can::BaseIds::kLast});
-  app_->add_option("--localizer-base", base_.localizer, "First identifier of the LOC_ messages")
+  listen->add_option("--localizer-base", base_.localizer, "First identifier of the LOC_ messages")
       ->check(base_range);
-  app_->add_option("--vehicle-base", base_.vehicle, "First identifier of the VEH_ messages")
+  listen->add_option("--vehicle-base", base_.vehicle, "First identifier of the VEH_ messages")
       ->check(base_range);
 }
 
@@ -103,8 +104,9 @@ bool ListenCommand::is_wanted(const can::DecodedFrame& frame) const {
   return named && !quiet_ && (bad || !only_bad_);
 }
 
-bool ListenCommand::show(const can::Frame& frame, double time_s, can::BusListener& listener) {
-  const can::DecodedFrame* decoded = listener.decode(frame);
+bool ListenCommand::show(const can::Frame& frame, std::string_view interface, double time_s,
+                         can::BusListener& listener) {
+  const can::DecodedFrame* decoded = listener.decode(frame, interface);
   if (decoded == nullptr || !is_wanted(*decoded)) return true;
   std::cout << (json_ ? can::json_of(*decoded, time_s) : can::text_of(*decoded, time_s)) << '\n';
   ++printed_;
@@ -113,20 +115,19 @@ bool ListenCommand::show(const can::Frame& frame, double time_s, can::BusListene
 
 Status ListenCommand::listen_to_log(std::istream& log, const std::string& name,
                                     can::BusListener& listener) {
-  std::string line;
+  can::CandumpReader reader(log, name);
   std::optional<double> first_s;
-  for (int number = 1; interrupted == 0 && std::getline(log, line); ++number) {
-    if (line.ends_with('\r')) line.pop_back();
-    if (line.empty()) continue;
-    const auto entry = can::parse_candump_line(line, fmt::format("{}:{}", name, number));
+  while (interrupted == 0) {
+    const auto entry = reader.next();
     if (!entry) return tl::unexpected(entry.error());
-    if (entry->kind != can::CandumpKind::kData) continue;
-    const double time_s = std::chrono::duration<double>(entry->time).count();
+    if (!*entry) break;
+    const can::CandumpEntry& line = **entry;
+    if (line.kind != can::CandumpKind::kData) continue;
+    const double time_s = std::chrono::duration<double>(line.time).count();
     if (!first_s) first_s = time_s;
     if (duration_s_ > 0.0 && time_s - *first_s > duration_s_) break;
-    if (!show(entry->frame, time_s, listener)) break;
+    if (!show(line.frame, line.interface, time_s, listener)) break;
   }
-  if (log.bad()) return fail("{}: found no readable file, wanted a candump log", name);
   return {};
 }
 
@@ -150,7 +151,8 @@ void ListenCommand::listen_to_bus(can::Bus& bus, can::BusListener& listener) {
     bus.wait(std::chrono::milliseconds(100));
     while (const auto received = wants_more ? bus.receive() : std::nullopt) {
       if (!first) first = received->received;
-      wants_more = show(received->frame, to_seconds(received->received - *first), listener);
+      const double time_s = to_seconds(received->received - *first);
+      wants_more = show(received->frame, source_, time_s, listener);
     }
     std::cout.flush();
     if (bus.condition() == condition) continue;

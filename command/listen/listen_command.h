@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -14,11 +15,10 @@
 
 namespace bevloc::command {
 
-/// The command. Call declare(), parse the command line, then call run() if the command was chosen.
+/// The command. Call declare(), parse the command line, then call run() if it names the command.
 class ListenCommand {
  public:
   void declare(CLI::App& app);
-  bool chosen() const { return app_->parsed(); }
 
   /// Prints each decoded frame. Ends with the log, after --duration, --count frames, or on SIGINT.
   /// Fails if a file cannot be read or the interface cannot be opened.
@@ -35,11 +35,11 @@ class ListenCommand {
   Status listen_to_log(std::istream& log, const std::string& name, can::BusListener& listener);
   Status listen_to_interface(can::BusListener& listener);
   /// Prints a frame. Returns false when enough was printed.
-  bool show(const can::Frame& frame, double time_s, can::BusListener& listener);
+  bool show(const can::Frame& frame, std::string_view interface, double time_s,
+            can::BusListener& listener);
   bool is_wanted(const can::DecodedFrame& frame) const;
   void print_json_totals(const can::BusListener& listener) const;
 
-  CLI::App* app_ = nullptr;
   std::string source_;
   std::vector<std::string> dbc_files_;
   std::vector<std::string> messages_;

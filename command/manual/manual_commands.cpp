@@ -32,7 +32,6 @@ void ManualCommand::declare(CLI::App& app) {
       ->check(CLI::ExistingDirectory)
       ->capture_default_str();
   manual->footer("Examples:\n  bevloc manual --out . && man ./bevloc.1");
-  manual->callback([this] { chosen_ = true; });
 }
 
 Status ManualCommand::run() const {
@@ -76,7 +75,6 @@ void CompletionCommand::declare(CLI::App& app) {
       "Examples:\n"
       "  source <(bevloc completion bash)\n"
       "  bevloc completion zsh > ~/.zfunc/_bevloc");
-  completion->callback([this] { chosen_ = true; });
 }
 
 Status CompletionCommand::run() const {

@@ -18,13 +18,11 @@ class ManualCommand {
 
   /// `app` is the whole program and must outlive this object.
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
   const firmware::SimulationReader* simulation_;
   const CLI::App* app_ = nullptr;
-  bool chosen_ = false;
   std::string folder_ = ".";
 };
 
@@ -33,12 +31,10 @@ class CompletionCommand {
  public:
   /// `app` is the whole program and must outlive this object.
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
   const CLI::App* app_ = nullptr;
-  bool chosen_ = false;
   std::string shell_;
 };
 

@@ -38,75 +38,99 @@ std::vector<std::string> names_in(const std::string& text) {
   return names;
 }
 
-/// The mappings whose keys a table describes.
-struct Place {
-  std::vector<std::string> mappings;
-  bool any_depth = false;
-};
-
-/// Returns the place of a table. `section` has no code marks, and is empty if its heading has none.
-/// `lead` is the line before the table.
-Place place_of(const std::string& section, const std::string& lead) {
-  Place place{{section}, section.empty()};
-  if (!lead.ends_with(":")) return place;
-  place.any_depth |= lead.starts_with("Keys of ");
-  const std::vector<std::string> names = names_in(lead);
-  if (names.empty()) return place;
-  place.mappings.clear();
-  for (const std::string& name : names) {
-    const bool is_whole = section.empty() || name.starts_with(section + ".");
-    place.mappings.push_back(is_whole ? name : section + "." + name);
-  }
-  return place;
-}
-
 std::string without_lists(const std::string& path) {
   return std::regex_replace(path, std::regex("\\[\\]"), "");
 }
 
 }  // namespace
 
+/// Reads a page line by line.
+class PageTexts::Reader {
+ public:
+  explicit Reader(PageTexts& texts) : texts_(texts) {}
+
+  void add(const std::string& line) {
+    const bool is_row = line.starts_with("|");
+    if (line.starts_with("## ")) {
+      begin_section(line);
+    } else if (is_row) {
+      add_row(cells_of(line));
+    } else if (!line.empty()) {
+      add_text(line);
+    } else if (introduces_ && !texts_.introductions_[heading_].empty()) {
+      introduces_ = false;
+    }
+    in_table_ = is_row;
+  }
+
+ private:
+  /// The mappings whose keys a table describes.
+  struct Place {
+    std::vector<std::string> mappings;
+    bool any_depth = false;
+  };
+
+  void begin_section(const std::string& line) {
+    heading_ = plain(line.substr(3));
+    const std::vector<std::string> names = names_in(line);
+    section_ = names.empty() ? "" : names.front();
+    introduces_ = true;
+    lead_.clear();
+  }
+
+  void add_row(const std::vector<std::string>& cells) {
+    introduces_ = false;
+    if (!in_table_) return begin_table(cells);
+    if (!has_meanings_) return;
+    for (const std::string& key : names_in(cells.front())) {
+      for (const std::string& mapping : place_.mappings) {
+        texts_.rows_.push_back({mapping, place_.any_depth, key, plain(cells.back())});
+      }
+    }
+  }
+
+  void begin_table(const std::vector<std::string>& header) {
+    has_meanings_ = header.size() > 1 && header.back() == "meaning";
+    place_ = place_of_table();
+    lead_.clear();
+  }
+
+  /// The place of the table that begins here.
+  Place place_of_table() const {
+    Place place{{section_}, section_.empty()};
+    if (!lead_.ends_with(":")) return place;
+    place.any_depth |= lead_.starts_with("Keys of ");
+    const std::vector<std::string> names = names_in(lead_);
+    if (names.empty()) return place;
+    place.mappings.clear();
+    for (const std::string& name : names) {
+      const bool is_whole = section_.empty() || name.starts_with(section_ + ".");
+      place.mappings.push_back(is_whole ? name : section_ + "." + name);
+    }
+    return place;
+  }
+
+  void add_text(const std::string& line) {
+    lead_ = line;
+    if (!introduces_) return;
+    std::string& text = texts_.introductions_[heading_];
+    text += (text.empty() ? "" : " ") + plain(line);
+  }
+
+  PageTexts& texts_;
+  std::string heading_;
+  std::string section_;        ///< the name in the heading; empty if it has none
+  std::string lead_;           ///< the latest line outside of tables
+  Place place_;                ///< of the latest table
+  bool has_meanings_ = false;  ///< whether the latest table describes keys
+  bool in_table_ = false;
+  bool introduces_ = false;  ///< whether the next text belongs to the section's first paragraph
+};
+
 PageTexts::PageTexts(std::string_view page) {
   std::istringstream lines{std::string(page)};
-  std::string heading;
-  std::string section;
-  std::string lead;
-  Place place;
-  bool has_meanings = false;
-  bool in_table = false;
-  bool introduces = false;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("## ")) {
-      heading = plain(line.substr(3));
-      const std::vector<std::string> names = names_in(line);
-      section = names.empty() ? "" : names.front();
-      introduces = true;
-      lead.clear();
-    } else if (line.starts_with("|")) {
-      introduces = false;
-      const std::vector<std::string> cells = cells_of(line);
-      if (!in_table) {
-        has_meanings = cells.size() > 1 && cells.back() == "meaning";
-        place = place_of(section, lead);
-        lead.clear();
-      } else if (has_meanings) {
-        for (const std::string& key : names_in(cells.front())) {
-          for (const std::string& mapping : place.mappings) {
-            rows_.push_back({mapping, place.any_depth, key, plain(cells.back())});
-          }
-        }
-      }
-    } else if (!line.empty()) {
-      lead = line;
-      if (introduces) {
-        std::string& text = introductions_[heading];
-        text += (text.empty() ? "" : " ") + plain(line);
-      }
-    } else if (introduces && !introductions_[heading].empty()) {
-      introduces = false;
-    }
-    in_table = line.starts_with("|");
-  }
+  Reader reader(*this);
+  for (std::string line; std::getline(lines, line);) reader.add(line);
 }
 
 std::string PageTexts::meaning(const std::string& path) const {

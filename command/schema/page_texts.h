@@ -27,6 +27,8 @@ class PageTexts {
   std::string introduction(const std::string& section) const;
 
  private:
+  class Reader;
+
   struct Row {
     std::string mapping;  ///< such as "can.vehicle"; empty for the whole file
     bool any_depth = false;

@@ -36,7 +36,6 @@ void SchemaCommand::declare(CLI::App& app) {
       "Examples:\n"
       "  bevloc schema > bevlocd.schema.json\n"
       "  bevloc schema --rig > rig.schema.json");
-  schema->callback([this] { chosen_ = true; });
 }
 
 Status SchemaCommand::run() const {

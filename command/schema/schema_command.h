@@ -19,12 +19,10 @@ class SchemaCommand {
   explicit SchemaCommand(const firmware::SimulationReader* simulation) : simulation_(simulation) {}
 
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
   const firmware::SimulationReader* simulation_;
-  bool chosen_ = false;
   bool rig_ = false;
 };
 

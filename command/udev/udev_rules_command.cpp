@@ -111,7 +111,6 @@ void UdevRulesCommand::declare(CLI::App& app) {
       "  bevloc udev-rules --config my_config.yaml\n"
       "  bevloc udev-rules --config /etc/bevloc/bevlocd.yaml --out "
       "/etc/udev/rules.d/60-bevloc.rules");
-  rules->callback([this] { chosen_ = true; });
 }
 
 Status UdevRulesCommand::run() const {

@@ -28,12 +28,10 @@ class UdevRulesCommand {
       : simulation_(simulation) {}
 
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
   const firmware::SimulationReader* simulation_;
-  bool chosen_ = false;
   std::string config_file_;
   std::string out_;
 };

@@ -205,7 +205,7 @@ Status Writer::write_index(ChunkIndex& chunk) {
 
 Status Writer::flush() {
   if (Status closed = close_chunk(); !closed) return closed;
-  if (fdatasync(file_.get()) != 0 && errno != EINVAL && errno != EROFS) {
+  if (fdatasync(file_.get()) != 0 && errno != EINVAL) {
     state_ = fail("{}: cannot write this file to the disk ({}), wanted a healthy disk",
                   path_.string(), std::strerror(errno));
   }

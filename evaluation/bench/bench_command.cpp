@@ -5,11 +5,12 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "common/shipped_file.h"
 #include "evaluation/bench/bench_report.h"
 #include "evaluation/bench/stages.h"
 #include "evaluation/bench/sweeps.h"
-#include "evaluation/command_output.h"
+#include "evaluation/progress_bar.h"
 
 namespace bevloc::bench {
 namespace {
@@ -48,7 +49,6 @@ void BenchCommand::declare(CLI::App& app) {
       "  bevloc bench --json bench.json\n"
       "  bevloc bench --stage solver map-raster\n"
       "  bevloc bench --sweep map hypotheses");
-  bench->callback([this] { chosen_ = true; });
 }
 
 Status BenchCommand::run() const {
@@ -62,7 +62,7 @@ Status BenchCommand::measure(const evaluation::DriveConfig& config) const {
       run_bench(config, options_, [](int done, int all) { evaluation::show_progress(done, all); });
   if (!result) return tl::unexpected(result.error());
   fmt::print("{}", table_of(*result));
-  return evaluation::write_file(to_json(*result), json_file_);
+  return write_option_file(json_file_, to_json(*result));
 }
 
 Status BenchCommand::sweep(const evaluation::DriveConfig& config) const {
@@ -77,7 +77,7 @@ Status BenchCommand::sweep(const evaluation::DriveConfig& config) const {
     std::fflush(stdout);
     results.push_back(*result);
   }
-  return evaluation::write_file(to_json(results), json_file_);
+  return write_option_file(json_file_, to_json(results));
 }
 
 }  // namespace bevloc::bench

@@ -20,13 +20,11 @@ class BenchCommand {
   Status run() const;
 
   /// Whether the parsed command line names this command.
-  bool chosen() const { return chosen_; }
 
  private:
   Status measure(const evaluation::DriveConfig& config) const;
   Status sweep(const evaluation::DriveConfig& config) const;
 
-  bool chosen_ = false;
   std::string config_file_ = "config/demo.yaml";
   BenchOptions options_;
   std::vector<std::string> sweeps_;

@@ -174,7 +174,7 @@ std::string to_json(const BenchResult& result) {
     frame["times_ideal"] = or_null(measured, result.whole_frame->time.p50_ms / ideals_ms);
     json["frame"] = frame;
   }
-  return dump_json(json, 2) + "\n";
+  return json_document(json);
 }
 
 std::string to_json(const std::vector<SweepResult>& sweeps) {
@@ -188,7 +188,7 @@ std::string to_json(const std::vector<SweepResult>& sweeps) {
     }
     json["sweeps"][sweep.name] = rows;
   }
-  return dump_json(json, 2) + "\n";
+  return json_document(json);
 }
 
 }  // namespace bevloc::bench

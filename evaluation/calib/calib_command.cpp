@@ -7,12 +7,13 @@
 #include "common/files.h"
 #include "common/json_dump.h"
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "common/replace_file.h"
 #include "evaluation/calib/calib_picture.h"
 #include "evaluation/calib/calib_report.h"
 #include "evaluation/calib/folder_recording.h"
 #include "evaluation/calib/kept_frameset.h"
-#include "evaluation/command_output.h"
+#include "evaluation/progress_bar.h"
 #include "pipeline/calibration/import/import_rig.h"
 #include "pipeline/calibration/refine/refine_rig.h"
 #include "pipeline/calibration/rig_yaml.h"
@@ -221,7 +222,7 @@ Result<bool> CalibCommand::run_on_pictures() const {
   if (refine_) print_time_offsets(*refinement);
   if (Status s = write_refined(after); !s) return tl::unexpected(s.error());
   const nlohmann::json json = check_ ? json_of(check) : json_of(*refinement);
-  if (Status s = write_file(dump_json(json, 2) + "\n", json_file_); !s) {
+  if (Status s = write_option_file(json_file_, json_document(json)); !s) {
     return tl::unexpected(s.error());
   }
   if (!picture_file_.empty()) {

@@ -15,7 +15,6 @@ namespace bevloc::evaluation {
 class CalibCommand {
  public:
   void declare(CLI::App& app);
-  bool chosen() const { return import_ || check_ || refine_; }
   /// Does what the parsed command line asks for. False if a check finds a camera that is not good.
   Result<command::Verdict> run() const;
 

@@ -10,9 +10,10 @@
 
 #include "common/json_dump.h"
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "evaluation/calib/calib_report.h"
-#include "evaluation/command_output.h"
 #include "evaluation/drive/error_statistics.h"
+#include "evaluation/progress_bar.h"
 #include "evaluation/town_seeds.h"
 #include "pipeline/calibration/refine/refine_rig.h"
 
@@ -95,7 +96,6 @@ void CalibEvaluation::declare(CLI::App& eval) {
   calib->footer(
       "Examples:\n"
       "  bevloc eval calib --first-seed 401 --drives 5 --json errors.json");
-  calib->callback([this] { chosen_ = true; });
 }
 
 Status CalibEvaluation::run() const {
@@ -124,7 +124,7 @@ Status CalibEvaluation::run() const {
     show_progress(i + 1, drives_, "drives");
   }
   print_table(sums, json["errors"]);
-  return write_file(dump_json(json, 2) + "\n", json_file_);
+  return write_option_file(json_file_, json_document(json));
 }
 
 }  // namespace bevloc::evaluation

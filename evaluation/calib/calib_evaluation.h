@@ -13,11 +13,9 @@ namespace bevloc::evaluation {
 class CalibEvaluation {
  public:
   void declare(CLI::App& eval);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
-  bool chosen_ = false;
   SimulatedRecordingOptions options_;
   int drives_ = 1;
   std::string json_file_;

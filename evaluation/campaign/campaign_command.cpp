@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "evaluation/campaign/campaign_report.h"
-#include "evaluation/command_output.h"
 
 namespace bevloc::evaluation {
 
@@ -31,7 +31,6 @@ void CampaignCommand::declare(CLI::App& app) {
       "  bevloc campaign --list\n"
       "  bevloc campaign --modes odometry-spin --timeline\n"
       "  bevloc campaign --seeds 20 --json campaign.json");
-  campaign->callback([this] { chosen_ = true; });
 }
 
 Status CampaignCommand::list() const {
@@ -55,7 +54,7 @@ Status CampaignCommand::run() const {
     std::fflush(stdout);
   });
   if (!status) return status;
-  return write_file(to_json(rows, inputs_.options.level), json_file_);
+  return write_option_file(json_file_, to_json(rows, inputs_.options.level));
 }
 
 }  // namespace bevloc::evaluation

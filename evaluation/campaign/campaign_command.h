@@ -29,12 +29,10 @@ class CampaignCommand {
   Status run() const;
 
   /// Whether the parsed command line names this command.
-  bool chosen() const { return chosen_; }
 
  private:
   Status list() const;
 
-  bool chosen_ = false;
   bool list_ = false;
   bool timeline_ = false;
   CampaignInputs inputs_;

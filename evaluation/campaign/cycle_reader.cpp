@@ -1,5 +1,6 @@
 #include "evaluation/campaign/cycle_reader.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -17,6 +18,12 @@ constexpr double kNotSent = std::numeric_limits<double>::quiet_NaN();
 double part_of_limit(const JudgedError& pose) {
   return pose.error.cwiseAbs().cwiseQuotient(kFreewayAlertLimits).maxCoeff();
 }
+
+/// The place of LOC_StdDev in LOC_Solution.
+constexpr size_t kDeviationPart = [] {
+  const auto& parts = can::loc_solution::kParts;
+  return static_cast<size_t>(std::ranges::find(parts, &can::loc_std_dev::kMessage) - parts.begin());
+}();
 
 /// Rounded to whole nanoseconds.
 Duration rounded_time(double time_s) {
@@ -47,12 +54,10 @@ CycleReader::CycleReader(std::unique_ptr<can::Bus> bus, const can::BaseIds& base
 JudgedCycle CycleReader::step(Time now) {
   JudgedCycle cycle;
   while (const auto received = bus_->receive()) {
-    if (received->frame.id == can::loc_std_dev::kMessage.id(base_)) take_deviation(received->frame);
-    if (received->frame.id == can::loc_solution::kMessage.id(base_)) {
-      for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
-        if (can::loc_solution::kParts[part] != &can::loc_std_dev::kMessage) continue;
-        take_deviation(can::part_of_solution(received->frame, part, base_));
-      }
+    const can::Frame& frame = received->frame;
+    if (frame.id == can::loc_std_dev::kMessage.id(base_)) take_deviation(frame);
+    if (frame.id == can::loc_solution::kMessage.id(base_)) {
+      take_deviation(can::part_of_solution(frame, kDeviationPart, base_));
     }
     const auto pose = reader_.accept(*received);
     if (!pose) continue;

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "evaluation/campaign/stanford_diagram.h"
-#include "evaluation/command_output.h"
 #include "evaluation/map_turns.h"
+#include "evaluation/progress_bar.h"
 
 namespace bevloc::evaluation {
 
@@ -27,7 +28,6 @@ void IntegrityCommand::declare(CLI::App& eval) {
       "Examples:\n"
       "  bevloc eval integrity --modes none --drives 200\n"
       "  bevloc eval integrity --drives 20 --json integrity.json");
-  integrity->callback([this] { chosen_ = true; });
 }
 
 Status IntegrityCommand::run() const {
@@ -51,7 +51,7 @@ Status IntegrityCommand::run() const {
     }
   }
   fmt::print("{}", to_table(diagrams));
-  return write_file(to_json(diagrams), json_file_);
+  return write_option_file(json_file_, to_json(diagrams));
 }
 
 }  // namespace bevloc::evaluation

@@ -19,10 +19,8 @@ class IntegrityCommand {
   Status run() const;
 
   /// Whether the parsed command line names this command.
-  bool chosen() const { return chosen_; }
 
  private:
-  bool chosen_ = false;
   CampaignInputs inputs_;
   std::vector<std::string> maps_;
   std::string json_file_;

@@ -83,6 +83,24 @@ Se2 transfer(const MeasuredMatch& measured, const Se2& truth, const HypothesisGr
   return {correction[0], correction[1], correction[2]};
 }
 
+/// How little a match fits that was measured `framesets` away from a prior that was off by `had`,
+/// for a prior that is off by `wanted`.
+double cost_of(const Se2& had, size_t framesets, const Se2& wanted,
+               const std::array<double, 3>& ranges) {
+  const auto had_values = values_of(had);
+  const auto wanted_values = values_of(wanted);
+  double cost = kCostPerFrameset * static_cast<double>(framesets);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    // Inside the range it hardly matters where the prior was.
+    const double inside = ranges[axis] * kSamePeak;
+    const bool both_inside =
+        std::abs(wanted_values[axis]) < inside && std::abs(had_values[axis]) < inside;
+    if (both_inside) continue;
+    cost += std::pow((wanted_values[axis] - had_values[axis]) / ranges[axis], 2);
+  }
+  return cost;
+}
+
 /// The probability near the border of the search, per axis, if the peak of a measured match moves
 /// to `peak`. It grows if the peak comes nearer to the border.
 Eigen::Vector3d edge_mass_of(const MeasuredMatch& measured, const Se2& peak,
@@ -205,38 +223,34 @@ void MatchModel::begin_block(const MatchedPlace& place) {
 }
 
 const MeasuredMatch& MatchModel::most_alike(SearchRange range, const Se2& truth) const {
-  const auto ranges = ranges_of(hypotheses(range));
-  const auto wanted = values_of(truth);
   const MeasuredMatch* best = nullptr;
-  double least = std::numeric_limits<double>::max();
   // The neighbourhood grows until it has a match of this range.
   for (size_t reach = kNeighbourhood; best == nullptr; reach *= 2) {
     assert(reach < 4 * table_.places.size() + 4 * kNeighbourhood);
-    const size_t first = at_ > reach ? at_ - reach : 0;
-    const size_t last = std::min(at_ + reach, table_.places.size() - 1);
-    for (size_t i = first; i <= last; ++i) {
-      const MeasuredPlace& place = table_.places[i];
-      if (place.drive != table_.places[at_].drive) continue;
-      const double distance = static_cast<double>(i > at_ ? i - at_ : at_ - i);
-      for (const MeasuredMatch& match : place.matches) {
-        if (match.range != range) continue;
-        const auto had = values_of(match.truth);
-        double cost = kCostPerFrameset * distance;
-        for (size_t axis = 0; axis < 3; ++axis) {
-          // Inside the range it hardly matters where the prior was.
-          const double inside = ranges[axis] * kSamePeak;
-          const double difference = std::abs(wanted[axis] - had[axis]);
-          const bool both_inside = std::abs(wanted[axis]) < inside && std::abs(had[axis]) < inside;
-          cost += both_inside ? 0.0 : std::pow(difference / ranges[axis], 2);
-        }
-        if (cost < least) {
-          least = cost;
-          best = &match;
-        }
-      }
-    }
+    best = most_alike_within(reach, range, truth);
   }
   return *best;
+}
+
+const MeasuredMatch* MatchModel::most_alike_within(size_t reach, SearchRange range,
+                                                   const Se2& truth) const {
+  const auto ranges = ranges_of(hypotheses(range));
+  const MeasuredMatch* best = nullptr;
+  double least = std::numeric_limits<double>::max();
+  const size_t first = at_ > reach ? at_ - reach : 0;
+  const size_t last = std::min(at_ + reach, table_.places.size() - 1);
+  for (size_t i = first; i <= last; ++i) {
+    const MeasuredPlace& place = table_.places[i];
+    if (place.drive != table_.places[at_].drive) continue;
+    for (const MeasuredMatch& match : place.matches) {
+      if (match.range != range) continue;
+      const double cost = cost_of(match.truth, i > at_ ? i - at_ : at_ - i, truth, ranges);
+      if (cost >= least) continue;
+      least = cost;
+      best = &match;
+    }
+  }
+  return best;
 }
 
 }  // namespace bevloc::evaluation

@@ -52,6 +52,8 @@ class MatchModel {
   void follow(const MatchedPlace& place);
   void begin_block(const MatchedPlace& place);
   const MeasuredMatch& most_alike(SearchRange range, const Se2& truth) const;
+  /// Of the places at most `reach` before and after this one; null if none has such a match.
+  const MeasuredMatch* most_alike_within(size_t reach, SearchRange range, const Se2& truth) const;
   const MeasuredMatch& beside(const Se2& offset) const;
 
   const MatchTable& table_;

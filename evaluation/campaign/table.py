@@ -7,10 +7,18 @@ from pathlib import Path
 from statistics import median
 from typing import Optional, TypedDict
 
-HEAD = (
-    "| mode | what goes wrong | detected by | after, s | valid beyond the alert limits, s "
-    "| worst error, m / m / deg | recovered after, s | valid | |\n"
-    "|---|---|---|---:|---:|---:|---:|---:|---|\n"
+from training import markdown
+
+HEADER = (
+    "mode",
+    "what goes wrong",
+    "detected by",
+    "after, s",
+    "valid beyond the alert limits, s",
+    "worst error, m / m / deg",
+    "recovered after, s",
+    "valid",
+    "",
 )
 
 
@@ -46,15 +54,15 @@ def most_common(names: list[Optional[str]]) -> str:
     return ", ".join(name for name, _ in counts.most_common(2)) or "-"
 
 
-def line_of(rows: list[Row]) -> str:
-    """The line of one mode."""
+def cells_of(rows: list[Row]) -> list[str]:
+    """The row of one mode."""
     runs = len(rows)
     beyond = max(row["valid_beyond_alert_s"] for row in rows)
     worst = [max(row["worst"][axis] for row in rows) for axis in range(3)]
     valid = 100 * sum(row["valid_share"] for row in rows) / runs
     ends = rows[0]["fault_ends"]
     has_fault = rows[0]["mode"] != "none"
-    cells = [
+    return [
         f"`{rows[0]['mode']}`",
         rows[0]["what"],
         most_common([row["detected_by"] for row in rows]),
@@ -65,14 +73,14 @@ def line_of(rows: list[Row]) -> str:
         f"{valid:.1f} %",
         "" if beyond <= rows[0]["limit_s"] else f"**fails** ({rows[0]['limit_s']:g} s allowed)",
     ]
-    return "| " + " | ".join(cells) + " |\n"
 
 
-def markdown(rows: list[Row]) -> str:
+def text_of(rows: list[Row]) -> str:
+    """The whole table."""
     by_mode: dict[str, list[Row]] = {}
     for row in rows:
         by_mode.setdefault(row["mode"], []).append(row)
-    return HEAD + "".join(line_of(of_mode) for of_mode in by_mode.values())
+    return markdown.table(HEADER, map(cells_of, by_mode.values()), text_columns=3)
 
 
 def marks(level: str) -> tuple[str, str]:
@@ -80,14 +88,9 @@ def marks(level: str) -> tuple[str, str]:
 
 
 def write(page: Path, level: str, command: str, text: str) -> None:
-    """Replaces what lies between the marks of the level."""
+    """Replaces what lies between the marks of the level. MarksError if the marks are missing."""
     begin, end = marks(level)
-    old = page.read_text()
-    before, _, rest = old.partition(begin)
-    _, found, after = rest.partition(end)
-    if not found:
-        raise SystemExit(f"{page}: found no '{begin.strip()}' with its end, wanted both marks")
-    page.write_text(f"{before}{begin}\n    {command}\n\n{text}\n{end}{after}")
+    markdown.write_between_marks(page, begin, end, f"\n    {command}\n\n{text}\n")
 
 
 def command_line(

@@ -6,12 +6,12 @@
 
 #include <spdlog/spdlog.h>
 
-#include "common/files.h"
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "common/shipped_file.h"
 #include "evaluation/campaign/match_recorder.h"
-#include "evaluation/command_output.h"
 #include "evaluation/map_turns.h"
+#include "evaluation/progress_bar.h"
 #include "evaluation/town_seeds.h"
 #include "pipeline/calibration/rig_yaml.h"
 
@@ -36,7 +36,6 @@ void TuneMatchesCommand::declare(CLI::App& tune) {
   matches->footer(
       "Examples:\n"
       "  bevloc tune matches --drives 10 --first-seed 2000 --csv matches.csv");
-  matches->callback([this] { chosen_ = true; });
 }
 
 Status TuneMatchesCommand::run() const {
@@ -67,7 +66,7 @@ Status TuneMatchesCommand::run() const {
     });
     if (!places) return tl::unexpected(places.error());
     std::ranges::move(*places, std::back_inserter(table.places));
-    if (Status status = write_file(to_csv(table), csv_file_); !status) return status;
+    if (Status status = write_option_file(csv_file_, to_csv(table)); !status) return status;
   }
   return {};
 }

@@ -19,10 +19,8 @@ class TuneMatchesCommand {
   Status run() const;
 
   /// Whether the parsed command line names this command.
-  bool chosen() const { return chosen_; }
 
  private:
-  bool chosen_ = false;
   std::string config_ = "config/demo.yaml";
   int drives_ = 6;
   uint64_t first_seed_ = 2000;

@@ -4,6 +4,7 @@
 
 #include "common/files.h"
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "evaluation/drive/bus_factory.h"
 #include "evaluation/drive/simulated_run.h"
@@ -89,8 +90,7 @@ Status simulate(const DriveOptions& options, const DriveConfig& config, const Ri
       config, rig, run, [](const firmware::ApplianceView&) { return firmware::stop_requested(); });
   if (!report) return tl::unexpected(report.error());
   fmt::print("{}", to_table(*report));
-  if (options.json_file.empty()) return {};
-  return write_file(options.json_file, to_json(*report));
+  return write_option_file(options.json_file, to_json(*report));
 }
 
 Status run(const firmware::ProgramOptions& program, const DriveOptions& drive,

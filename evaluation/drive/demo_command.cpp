@@ -18,10 +18,7 @@ void DemoCommand::declare(CLI::App& app) {
       "Examples:\n"
       "  bevloc demo --fast --duration 20\n"
       "  bevloc demo --seed 5 --out drive");
-  demo->callback([this, demo] {
-    chosen_ = true;
-    rest_ = demo->remaining();
-  });
+  demo->callback([this, demo] { rest_ = demo->remaining(); });
 }
 
 Status DemoCommand::run() const {

@@ -14,11 +14,9 @@ namespace bevloc::evaluation {
 class DemoCommand {
  public:
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
-  bool chosen_ = false;
   std::vector<std::string> rest_;
 };
 

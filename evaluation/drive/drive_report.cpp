@@ -83,7 +83,7 @@ std::string to_json(const DriveReport& report) {
       {"duration_s", report.duration_s},
       {"map", report.map},
       {"model", report.model}};
-  return dump_json(json, 2) + "\n";
+  return json_document(json);
 }
 
 Status write_csv(const DriveReport& report, const std::string& path) {

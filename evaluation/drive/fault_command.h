@@ -17,9 +17,6 @@ class FaultCommand {
   /// Does what the parsed command line asks for.
   Status run() const;
 
-  /// Whether the parsed command line names this command.
-  bool chosen() const { return !verb_.empty(); }
-
  private:
   std::string verb_;
   std::string socket_;

@@ -5,12 +5,13 @@
 
 #include "common/json_dump.h"
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "common/shipped_file.h"
 #include "evaluation/choice_option.h"
-#include "evaluation/command_output.h"
 #include "evaluation/drive/sheet.h"
 #include "evaluation/localize/localize_report.h"
 #include "evaluation/localize/picture_set.h"
+#include "evaluation/progress_bar.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/map/map_summary.h"
@@ -175,7 +176,6 @@ void LocalizeCommand::declare(CLI::App& app) {
       "--sheet sheet.png\n"
       "  bevloc localize --rig rig.yaml --map town.osm --images pictures --prior 10,20,90 --truth "
       "--priors 300");
-  localize->callback([this] { chosen_ = true; });
 }
 
 Status LocalizeCommand::run() const {
@@ -220,7 +220,7 @@ Status LocalizeCommand::run() const {
     json["priors"] = json_of(scores);
     fmt::print("\n{}", text_of(scores));
   }
-  return write_file(dump_json(json, 2) + "\n", json_file_);
+  return write_option_file(json_file_, json_document(json));
 }
 
 }  // namespace bevloc::evaluation

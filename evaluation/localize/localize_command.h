@@ -17,11 +17,9 @@ namespace bevloc::evaluation {
 class LocalizeCommand {
  public:
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
-  bool chosen_ = false;
   std::string rig_file_;
   std::string map_file_;
   std::string image_folder_;

@@ -13,7 +13,7 @@
 #include "common/json_dump.h"
 #include "common/number_text.h"
 #include "common/option_checks.h"
-#include "common/output_check.h"
+#include "common/output_file.h"
 #include "common/replace_file.h"
 #include "evaluation/maps/map_diff.h"
 #include "evaluation/maps/map_facts.h"
@@ -43,10 +43,6 @@ Result<GeoOrigin> origin_from(const std::string& text) {
   const GeoOrigin origin{*latitude_deg, *longitude_deg};
   if (is_known(origin)) return origin;
   return fail("--origin: found \"{}\", wanted a place: (0, 0) stands for an unknown one", text);
-}
-
-Status write_json(const nlohmann::json& json, const std::string& path) {
-  return path.empty() ? Status() : bevloc::write_file(path, dump_json(json, 2) + "\n");
 }
 
 Status check_map_extension(const std::filesystem::path& path) {
@@ -157,7 +153,7 @@ Status MapCommand::import() const {
   const auto imported = import_map(in_, options);
   if (!imported) return tl::unexpected(imported.error());
   fmt::print("{}", text_of(imported->report));
-  status = write_json(json_of(*imported), json_);
+  status = write_option_file(json_, json_document(json_of(*imported)));
   if (status) status = write_map(*imported, out_, version_1_);
   if (!status) return status;
   print_map(*imported, out_);
@@ -170,7 +166,7 @@ Status MapCommand::info() const {
   print_map(*imported, in_);
   const MapFacts facts = facts_of(imported->map);
   fmt::print("{}", text_of(facts));
-  return write_json(json_of(facts), json_);
+  return write_option_file(json_, json_document(json_of(facts)));
 }
 
 Status MapCommand::check() const {
@@ -179,7 +175,7 @@ Status MapCommand::check() const {
   const std::vector<std::string> found = faults_of(imported->map);
   for (const std::string& fault : found) fmt::print("{}: {}\n", in_, fault);
   const nlohmann::json json{{"faults", found}, {"left_out", imported->map.left_out}};
-  if (Status status = write_json(json, json_); !status) return status;
+  if (Status status = write_option_file(json_, json_document(json)); !status) return status;
   if (!found.empty()) {
     return fail("{}: found {} fault{}, wanted none", in_, found.size(),
                 found.size() == 1 ? "" : "s");
@@ -210,7 +206,8 @@ Status MapCommand::diff() const {
   }
   const MapDiff difference = compare(*first, *second);
   fmt::print("{}", text_of(difference));
-  if (Status status = write_json(json_of(difference), json_); !status) return status;
+  if (Status status = write_option_file(json_, json_document(json_of(difference))); !status)
+    return status;
   return picture_.empty() ? Status() : write_diff_picture(difference, size_px_, picture_);
 }
 

@@ -12,7 +12,6 @@ namespace bevloc::evaluation {
 class MapCommand {
  public:
   void declare(CLI::App& app);
-  bool chosen() const { return action_ != nullptr; }
   /// Fails, before it reads anything, if an output file is also an input file.
   Status run() const;
 

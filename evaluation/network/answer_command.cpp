@@ -53,7 +53,6 @@ void AnswerCommand::declare(CLI::App& app) {
   answer->footer(
       "Examples:\n"
       "  bevloc store-answer models/nano.onnx");
-  answer->callback([this] { chosen_ = true; });
 }
 
 Status AnswerCommand::run() const {

@@ -17,10 +17,8 @@ class AnswerCommand {
   Status run() const;
 
   /// Whether the parsed command line names this command.
-  bool chosen() const { return chosen_; }
 
  private:
-  bool chosen_ = false;
   std::string model_ = "models/nano.onnx";
 };
 

@@ -6,11 +6,12 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "common/shipped_file.h"
 #include "evaluation/choice_option.h"
-#include "evaluation/command_output.h"
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/network/network_report.h"
+#include "evaluation/progress_bar.h"
 #include "pipeline/map/map_loader.h"
 
 namespace bevloc::evaluation {
@@ -61,7 +62,6 @@ void NetworkCommand::declare(CLI::App& eval) {
       "  bevloc eval network --frames 50\n"
       "  bevloc eval network --set all --csv sets.csv\n"
       "  bevloc eval network --model my.onnx --set night --json night.json");
-  network->callback([this] { chosen_ = true; });
 }
 
 Result<std::vector<sim::NuisanceSet>> NetworkCommand::sets() const {
@@ -100,8 +100,10 @@ Status NetworkCommand::run() const {
     fmt::print("\n{}", table_of(results.back()));
     std::fflush(stdout);
   }
-  if (Status status = write_file(to_json(results, subject), json_file_); !status) return status;
-  return write_file(to_csv(results), csv_file_);
+  if (Status status = write_option_file(json_file_, to_json(results, subject)); !status) {
+    return status;
+  }
+  return write_option_file(csv_file_, to_csv(results));
 }
 
 }  // namespace bevloc::evaluation

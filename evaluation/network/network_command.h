@@ -21,12 +21,10 @@ class NetworkCommand {
   Status run() const;
 
   /// Whether the parsed command line names this command.
-  bool chosen() const { return chosen_; }
 
  private:
   Result<std::vector<sim::NuisanceSet>> sets() const;
 
-  bool chosen_ = false;
   std::string model_ = "models/nano.onnx";
   std::string set_ = "standard";
   ReadOutRows rows_ = ReadOutRows::kSolvers;

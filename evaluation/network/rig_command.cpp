@@ -8,9 +8,10 @@
 
 #include "common/json_dump.h"
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "common/shipped_file.h"
-#include "evaluation/command_output.h"
 #include "evaluation/network/network_evaluation.h"
+#include "evaluation/progress_bar.h"
 #include "evaluation/summary_format.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/network/model/model_rig.h"
@@ -58,14 +59,14 @@ void RigCommand::declare(CLI::App& eval) {
       "  bevloc eval rig config/rig_van.yaml\n"
       "  bevloc eval rig rig.yaml --frames 500 --json rig.json\n"
       "  bevloc eval rig --random 7 --write rig_7.yaml");
-  rig->callback([this] { chosen_ = true; });
 }
 
 Result<RigCommand::NamedRig> RigCommand::chosen_rig() const {
   if (drawn_seed_) {
     const Rig rig = sim::random_rig(1.0, *drawn_seed_);
-    if (const Status written = write_file(format_rig(rig), drawn_file_); !written)
+    if (const Status written = write_option_file(drawn_file_, format_rig(rig)); !written) {
       return tl::unexpected(written.error());
+    }
     return NamedRig{fmt::format("random rig {}", *drawn_seed_), rig};
   }
   if (rig_file_.empty())
@@ -105,7 +106,7 @@ Status RigCommand::run() const {
                             {"model", evaluation->model_name()},
                             {"own", json_of(usual)},
                             {"given", json_of(found)}};
-  return write_file(dump_json(json, 2) + "\n", json_file_);
+  return write_option_file(json_file_, json_document(json));
 }
 
 }  // namespace bevloc::evaluation

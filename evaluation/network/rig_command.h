@@ -17,7 +17,6 @@ namespace bevloc::evaluation {
 class RigCommand {
  public:
   void declare(CLI::App& eval);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
@@ -28,7 +27,6 @@ class RigCommand {
   /// Reads or draws the other rig. Writes a drawn one to the file that was asked for.
   Result<NamedRig> chosen_rig() const;
 
-  bool chosen_ = false;
   std::string rig_file_;
   std::optional<uint64_t> drawn_seed_;
   std::string drawn_file_;

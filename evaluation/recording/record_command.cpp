@@ -19,7 +19,6 @@ void RecordCommand::declare(CLI::App& app) {
       "Examples:\n"
       "  bevloc record --config my_config.yaml --out recording\n"
       "  bevloc record --config config/demo.yaml --out recording --raw");
-  record->callback([this] { chosen_ = true; });
 }
 
 Status RecordCommand::run() const {

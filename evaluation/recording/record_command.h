@@ -16,12 +16,10 @@ namespace bevloc::evaluation {
 class RecordCommand {
  public:
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
   /// Returns only if bevlocd cannot be started.
   Status run() const;
 
  private:
-  bool chosen_ = false;
   std::string config_file_;
   std::string out_ = "recording";
   bool raw_ = false;

@@ -66,4 +66,18 @@ BusComparison compare_bus(const std::vector<PlayedFrame>& recorded,
   return comparison;
 }
 
+std::string bus_text(const BusComparison& bus, bool in_real_time) {
+  if (!bus.different && bus.recorded == bus.replayed) {
+    return fmt::format("bus       {} frames, equal to the recorded ones byte for byte\n",
+                       bus.replayed);
+  }
+  std::string text = fmt::format("bus       {} frames, {} were recorded; the first {} are equal\n",
+                                 bus.replayed, bus.recorded, bus.equal);
+  if (bus.different) text += fmt::format("          first difference: {}\n", *bus.different);
+  if (in_real_time) {
+    text += "          The recorded drive ran in real time, so the replay sends other frames.\n";
+  }
+  return text;
+}
+
 }  // namespace bevloc::evaluation

@@ -58,5 +58,8 @@ struct BusComparison {
 };
 BusComparison compare_bus(const std::vector<PlayedFrame>& recorded,
                           const std::vector<PlayedFrame>& replayed);
+/// The comparison as `bevloc replay` prints it. `in_real_time` says that the recorded drive ran in
+/// real time, so that the frames differ.
+std::string bus_text(const BusComparison& bus, bool in_real_time);
 
 }  // namespace bevloc::evaluation

@@ -1,13 +1,12 @@
 #include "evaluation/recording/replay_command.h"
 
-#include <fstream>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "common/files.h"
 #include "common/json_dump.h"
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "evaluation/recording/track.h"
 #include "firmware/recording/topics.h"
 
@@ -33,16 +32,6 @@ Distances distances(const std::vector<ReplayedPose>& poses, const Track& track) 
   }
   if (result.count > 0) result.mean_m /= static_cast<double>(result.count);
   return result;
-}
-
-void print_bus(const BusComparison& bus) {
-  if (!bus.different && bus.recorded == bus.replayed) {
-    fmt::print("bus       {} frames, equal to the recorded ones byte for byte\n", bus.replayed);
-    return;
-  }
-  fmt::print("bus       {} frames, {} were recorded; the first {} are equal\n", bus.replayed,
-             bus.recorded, bus.equal);
-  if (bus.different) fmt::print("          first difference: {}\n", *bus.different);
 }
 
 void print_distances(const char* name, const Distances& found) {
@@ -85,7 +74,6 @@ void ReplayCommand::declare(CLI::App& app) {
       "Examples:\n"
       "  bevloc replay recording/*.mcap --out replay\n"
       "  bevloc replay --from-candump bus.log --images pictures --config my_config.yaml");
-  replay->callback([this] { chosen_ = true; });
 }
 
 Status ReplayCommand::run() const {
@@ -101,9 +89,20 @@ Status ReplayCommand::run() const {
   if (candump && (overrides_.config.empty() || images_.empty())) {
     return fail("--from-candump: found no --config or no --images, wanted both");
   }
+  if (Status others = check_outputs(); !others) return others;
   if (Status made = create_folder(out_); !made) return made;
   if (Status writable = check_writable(json_file_); !writable) return writable;
   return candump ? replay_candump() : replay_recording();
+}
+
+Status ReplayCommand::check_outputs() const {
+  std::vector<std::filesystem::path> inputs = files_;
+  inputs.insert(inputs.end(), {candump_, overrides_.config, overrides_.model, overrides_.map});
+  Status status;
+  for (const std::filesystem::path& out : {json_file_, can_log(), poses_file()}) {
+    if (status) status = check_output(out, inputs);
+  }
+  return status;
 }
 
 Status ReplayCommand::write_poses(const ReplayOutcome& outcome, Time begin) const {
@@ -114,7 +113,7 @@ Status ReplayCommand::write_poses(const ReplayOutcome& outcome, Time begin) cons
                    to_seconds(pose.time - begin), to_string(pose.state), pose.map_from_vehicle->x_m,
                    pose.map_from_vehicle->y_m, pose.map_from_vehicle->yaw_rad);
   }
-  return write_file(out_ / "poses.csv", csv);
+  return write_file(poses_file(), csv);
 }
 
 Status ReplayCommand::replay_recording() const {
@@ -136,7 +135,7 @@ Status ReplayCommand::replay_recording() const {
   const auto poses = read_track(*recording, firmware::kPoseTopic);
   const auto truth = read_track(*recording, firmware::kTruthTopic);
   if (!poses || !truth) return tl::unexpected((poses ? truth : poses).error());
-  const auto outcome = replay(*setup, *inputs, out_ / "can.log");
+  const auto outcome = replay(*setup, *inputs, can_log());
   if (!outcome) return tl::unexpected(outcome.error());
   if (Status written = write_poses(*outcome, inputs->begin); !written) return written;
 
@@ -145,14 +144,13 @@ Status ReplayCommand::replay_recording() const {
   const Distances to_truth = distances(outcome->poses, *truth);
   fmt::print("replayed  {:.1f} s, {} framesets\n", to_seconds(inputs->end - inputs->begin),
              outcome->framesets);
-  print_bus(bus);
+  fmt::print("{}", bus_text(bus, recording->value(firmware::kLockstepKey) == "no"));
   print_distances("recorded", to_recorded);
   print_distances("truth", to_truth);
-  if (json_file_.empty()) return {};
   const nlohmann::json json{{"framesets", outcome->framesets},  {"frames_recorded", bus.recorded},
                             {"frames_replayed", bus.replayed},  {"frames_equal", bus.equal},
                             {"recorded", json_of(to_recorded)}, {"truth", json_of(to_truth)}};
-  return write_file(json_file_, dump_json(json, 2) + "\n");
+  return write_option_file(json_file_, json_document(json));
 }
 
 Status ReplayCommand::replay_candump() const {
@@ -160,16 +158,15 @@ Status ReplayCommand::replay_candump() const {
   if (!setup) return tl::unexpected(setup.error());
   const auto inputs = inputs_of_candump(candump_, images_, *setup);
   if (!inputs) return tl::unexpected(inputs.error());
-  const auto outcome = replay(*setup, *inputs, out_ / "can.log");
+  const auto outcome = replay(*setup, *inputs, can_log());
   if (!outcome) return tl::unexpected(outcome.error());
   if (Status written = write_poses(*outcome, inputs->begin); !written) return written;
   fmt::print("replayed  {:.1f} s, {} framesets\n", to_seconds(inputs->end - inputs->begin),
              outcome->framesets);
-  fmt::print("bus       {} frames in {}\n", outcome->sent.size(), (out_ / "can.log").string());
-  if (json_file_.empty()) return {};
+  fmt::print("bus       {} frames in {}\n", outcome->sent.size(), can_log().string());
   const nlohmann::json json{{"framesets", outcome->framesets},
                             {"frames_replayed", outcome->sent.size()}};
-  return write_file(json_file_, dump_json(json, 2) + "\n");
+  return write_option_file(json_file_, json_document(json));
 }
 
 }  // namespace bevloc::evaluation

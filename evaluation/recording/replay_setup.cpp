@@ -12,6 +12,7 @@
 #include "can/bus/candump.h"
 #include "common/files.h"
 #include "common/sha256.h"
+#include "common/version.h"
 #include "drivers/camera/replay/replay_camera.h"
 #include "evaluation/drive/drive_config.h"
 #include "firmware/devices/can_bus.h"
@@ -141,6 +142,13 @@ void warn_of_another_model(const Recording& recording, const firmware::Config& c
                config.model_file.string());
 }
 
+void warn_of_another_version(const Recording& recording) {
+  const std::string recorded = recording.value(firmware::kVersionKey);
+  if (recorded.empty() || recorded == version()) return;
+  spdlog::warn("{}: found a recording of bevloc {}, this is bevloc {}; frames and poses may differ",
+               recording.name(), recorded, version());
+}
+
 /// The log time of the first bus frame or image of the run. The head of the file does not count.
 uint64_t first_input_ns(const Recording& recording) {
   uint64_t first = recording.end_ns();
@@ -252,6 +260,7 @@ Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overri
   if (Status prepared = prepare(overrides, setup.config); !prepared) {
     return tl::unexpected(prepared.error());
   }
+  warn_of_another_version(recording);
   warn_of_another_model(recording, setup.config);
   auto rig = read_rig(setup.config.rig_file);
   if (!rig) return tl::unexpected(rig.error());

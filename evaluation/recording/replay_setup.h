@@ -34,7 +34,8 @@ class ScratchFolder {
 /// The configuration is the recorded one. Files that it names are taken from where they were if
 /// they are still the same, else from the recording. Its manifest is not checked. Authentication is
 /// left out, because a recording holds no key. Fails if the configuration takes GNSS from gpsd,
-/// because a recording holds no positions of gpsd. Warns if the model is another one than recorded.
+/// because a recording holds no positions of gpsd. Warns if the model or the version of bevloc is
+/// another one than recorded.
 Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overrides,
                              const ScratchFolder& scratch);
 

@@ -7,6 +7,7 @@
 #include "common/files.h"
 #include "common/jpeg.h"
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "evaluation/recording/played_devices.h"
 #include "evaluation/report/report_page.h"
 #include "firmware/recording/topics.h"
@@ -61,7 +62,7 @@ void add_pictures(Recording& recording, const ReportData& data, ShownFrame& fram
 
 std::vector<std::pair<std::string, std::string>> facts_of(const Recording& recording) {
   std::vector<std::pair<std::string, std::string>> facts{
-      {"bevloc", recording.value("version")},
+      {"bevloc", recording.value(firmware::kVersionKey)},
       {"configuration", recording.value(firmware::kConfigKey)},
       {"model", fmt::format("{} (SHA-256 {})", recording.value(firmware::kModelFileKey),
                             recording.value(firmware::kModelChecksumKey).substr(0, 16))},
@@ -75,17 +76,20 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Recording& recor
 void ReportCommand::declare(CLI::App& app) {
   auto* report = app.add_subcommand("report", "Make one HTML page of a recording");
   report->add_option("files", files_, "Files of one recording (.mcap), in any order")->required();
-  report->add_option("--out", out_, "The page")->check(output_file())->capture_default_str();
+  report->add_option("--out", out_, "The page (.html)")
+      ->check(output_file())
+      ->capture_default_str();
   report->add_option("--at", moments_,
                      "Explain the state at this time: 14:32, 14:32:05 (local time), or seconds");
   report->footer(
       "Examples:\n"
       "  bevloc report recording/*.mcap --out report.html\n"
       "  bevloc report recording/*.mcap --at 14:32");
-  report->callback([this] { chosen_ = true; });
 }
 
 Status ReportCommand::run() const {
+  if (Status named = check_extension(out_, ".html"); !named) return named;
+  if (Status other = check_output(out_, files_); !other) return other;
   auto recording = Recording::open(files_);
   if (!recording) return tl::unexpected(recording.error());
   for (const std::string& gap : recording->gaps()) fmt::print(stderr, "{}\n", gap);

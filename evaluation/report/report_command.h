@@ -14,11 +14,9 @@ namespace bevloc::evaluation {
 class ReportCommand {
  public:
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
   Status run() const;
 
  private:
-  bool chosen_ = false;
   std::vector<std::filesystem::path> files_;
   std::filesystem::path out_ = "report.html";
   std::vector<std::string> moments_;

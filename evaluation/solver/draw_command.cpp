@@ -17,7 +17,6 @@ void DrawCommand::declare(CLI::App& draw) {
   solver->footer(
       "Examples:\n"
       "  bevloc draw solver --scene 3 --json figures.json");
-  solver->callback([this] { chosen_ = true; });
 }
 
 Status DrawCommand::run() const {

@@ -18,10 +18,8 @@ class DrawCommand {
   Status run() const;
 
   /// Whether the parsed command line names this command.
-  bool chosen() const { return chosen_; }
 
  private:
-  bool chosen_ = false;
   uint64_t scene_ = 0;
   std::string json_file_;
 };

@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
+#include "common/output_file.h"
 #include "evaluation/choice_option.h"
-#include "evaluation/command_output.h"
+#include "evaluation/progress_bar.h"
 #include "evaluation/solver/scale_tuning.h"
 #include "evaluation/solver/solver_report.h"
 #include "sim/perception/matching_scene.h"
@@ -52,7 +53,6 @@ void SolverCommand::declare_eval(CLI::App& eval) {
       "Examples:\n"
       "  bevloc eval solver --scenes 200\n"
       "  bevloc eval solver --corruption hard --rows variants --json solver.json");
-  solver->callback([this] { chosen_ = true; });
 }
 
 void SolverCommand::declare_rows(CLI::App& command) {
@@ -74,10 +74,7 @@ void SolverCommand::declare_tune(CLI::App& tune) {
   solver->footer(
       "Examples:\n"
       "  bevloc tune solver --scenes 1000 --rows variants");
-  solver->callback([this] {
-    chosen_ = true;
-    tunes_ = true;
-  });
+  solver->callback([this] { tunes_ = true; });
 }
 
 Status SolverCommand::run() const {
@@ -119,10 +116,10 @@ Status SolverCommand::evaluate() const {
     }
   }
   fmt::print("{}", paper_comparison(*results));
-  if (Status status = write_file(to_json(*results, options, seed_), json_file_); !status) {
+  if (Status status = write_option_file(json_file_, to_json(*results, options, seed_)); !status) {
     return status;
   }
-  return write_file(to_csv(*results), csv_file_);
+  return write_option_file(csv_file_, to_csv(*results));
 }
 
 /// One case of each group that shares its scales.

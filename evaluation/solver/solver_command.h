@@ -20,7 +20,6 @@ class SolverCommand {
   Status run() const;
 
   /// Whether the parsed command line names one of these commands.
-  bool chosen() const { return chosen_; }
 
  private:
   enum class Rows { kVariants, kTableThree, kTableFour, kAll };
@@ -34,7 +33,6 @@ class SolverCommand {
   std::vector<SolverCase> cases_to_tune() const;
   void declare_rows(CLI::App& command);
 
-  bool chosen_ = false;
   bool tunes_ = false;
   int scenes_ = 200;
   uint64_t seed_ = 1;

@@ -40,7 +40,7 @@ Status write_solver_figures(uint64_t scene, const std::string& file) {
                             {"spectra", std::move(*spectra)},
                             {"axis_features", axis_figure(scenes.front())},
                             {"distributions", std::move(*distributions)}};
-  return bevloc::write_file(file, dump_json(json) + "\n");
+  return write_file(file, dump_json(json) + "\n");
 }
 
 }  // namespace bevloc::evaluation

@@ -162,7 +162,7 @@ std::string to_json(const std::vector<CaseResult>& results, const EvaluationOpti
     }
     json["rows"].push_back(std::move(row));
   }
-  return dump_json(json, 2) + "\n";
+  return json_document(json);
 }
 
 std::string to_csv(const std::vector<CaseResult>& results) {

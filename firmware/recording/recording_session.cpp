@@ -35,7 +35,7 @@ std::map<std::string, std::string> metadata_of(const Config& config, const HdMap
   const auto set = [&values](std::string_view key, std::string value) {
     values.emplace(key, std::move(value));
   };
-  set("version", std::string(version()));
+  set(kVersionKey, std::string(version()));
   set(kClockOffsetKey, std::to_string(offset.count()));
   set(kStartKey, std::to_string(now.time_since_epoch().count()));
   set(kLockstepKey, lockstep ? "yes" : "no");

@@ -32,6 +32,7 @@ inline constexpr const char* kBlackBoxFolder = "kept";
 
 /// The metadata record of a recording, and its keys.
 inline constexpr std::string_view kMetadataName = "bevloc";
+inline constexpr std::string_view kVersionKey = "version";
 inline constexpr std::string_view kClockOffsetKey = "log_time_minus_clock_ns";
 inline constexpr std::string_view kStartKey = "start_clock_ns";
 inline constexpr std::string_view kLockstepKey = "lockstep";

@@ -1,4 +1,4 @@
-// The light of the ego vehicle's dipped headlights, and the colours of lamps.
+// The light of the own vehicle's dipped headlights, and the colours of lamps.
 #pragma once
 
 #include <algorithm>

@@ -32,7 +32,7 @@ struct Lighting {
   float haze_per_m = 0.0F;  ///< extinction of the haze
   float overcast = 0.0F;
   float wet = 0.0F;          ///< 0 if dry, 1 if wet
-  float headlights = 0.0F;   ///< headlights of the ego vehicle
+  float headlights = 0.0F;   ///< headlights of the own vehicle
   float lamps = 0.0F;        ///< street lamps
   float glow = 0.0F;         ///< lit windows and lamps of other vehicles
   float noise_sigma = 0.0F;  ///< in 8-bit steps

@@ -90,7 +90,7 @@ bool intersect(const PanelInView& panel, const float* hidden_by, int count, Pane
   return most > 0.0F;
 }
 
-/// Computes the light of the ego vehicle's headlights at the hit points.
+/// Computes the light of the own vehicle's headlights at the hit points.
 BEVLOC_TARGET_CLONES
 void add_headlights(const PanelInView& panel, int count, PanelRun& run) {
   const PanelInView s = panel;

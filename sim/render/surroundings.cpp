@@ -13,7 +13,7 @@ Box box_around(const Eigen::Vector2d& centre, double reach_m) {
   return {centre - reach, centre + reach};
 }
 
-/// Whether a body overlaps the ego vehicle (about 4.6 m x 1.9 m, its middle 1.4 m ahead of the rear
+/// Whether a body overlaps the own vehicle (about 4.6 m x 1.9 m, its middle 1.4 m ahead of the rear
 /// axle).
 bool overlaps_vehicle(const VehicleBody& body, const Se2& map_from_vehicle) {
   const Eigen::Vector2d middle = map_from_vehicle * Eigen::Vector2d(1.4, 0.0);

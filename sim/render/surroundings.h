@@ -1,4 +1,4 @@
-// Finds the walls, posts and vehicles around the ego vehicle at one moment.
+// Finds the walls, posts and vehicles around the own vehicle at one moment.
 #pragma once
 
 #include <vector>
@@ -33,7 +33,7 @@ class SceneIndex {
   explicit SceneIndex(const World& world);
 
   /// Overwrites `surroundings` with everything within `radius_m` of the vehicle (kerbs: within half
-  /// of it). `time_s` places the traffic. Vehicles that overlap the ego vehicle are left out.
+  /// of it). `time_s` places the traffic. Vehicles that overlap the own vehicle are left out.
   void gather(const Se2& map_from_vehicle, double time_s, double radius_m,
               Surroundings& surroundings);
 

@@ -8,41 +8,6 @@
 namespace bevloc::sim {
 namespace {
 
-struct Entry {
-  NuisanceSet set;
-  std::string_view name;
-  std::string_view description;
-};
-
-constexpr std::array<Entry, kNuisanceSets> kEntries{{
-    {NuisanceSet::kStandard, "standard",
-     "usual nuisances; 1 or 2 cameras missing in 15 %, exposures within 10 ms"},
-    {NuisanceSet::kSixCameras, "six_cameras", "usual nuisances, six cameras that expose at once"},
-    {NuisanceSet::kClean, "clean", "exact calibration, level body, clear noon"},
-    {NuisanceSet::kNight, "night", "always night"},
-    {NuisanceSet::kRain, "rain", "always rain"},
-    {NuisanceSet::kOcclusion, "occlusion", "ten more standing vehicles"},
-    {NuisanceSet::kWornPaint, "worn_paint", "paint twice as worn"},
-    {NuisanceSet::kMapErrors, "map_errors", "10 % missing, 10 % doubled, shifted by 0.15 m"},
-    {NuisanceSet::kMapHabits, "map_habits",
-     "dividers end 5 to 30 m early or late, boundaries up to 0.7 m inside, across mouths, double"},
-    {NuisanceSet::kColour, "colour", "casts up to 25 %, saturation 0 to 1.5, a quarter grey"},
-    {NuisanceSet::kClutter, "clutter",
-     "lines at kerbs, studs, boxes, works, hard shadows, bollards, railings, people"},
-    {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm"},
-    {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree"},
-    {NuisanceSet::kSlopes, "slopes", "crests and sags of 300 m radius and more, camber, banks"},
-    {NuisanceSet::kRigs, "rigs", "another rig for each frame, half as various as in training"},
-    {NuisanceSet::kMissingCamera, "missing_camera", "exactly one camera missing"},
-    {NuisanceSet::kUnsynchronised, "unsynchronised", "each camera within 50 ms of the pose's time"},
-    {NuisanceSet::kUnsynchronisedUncompensated, "unsynchronised_uncompensated",
-     "the same without motion compensation"},
-}};
-
-const Entry& entry_of(NuisanceSet set) {
-  return kEntries[static_cast<size_t>(set)];
-}
-
 // What sets with several values change.
 constexpr MapErrors kWrongMap{.omission = 0.1, .ghost = 0.1, .shift_sigma_m = 0.15};
 constexpr MapHabits kHabitualMap{.short_divider = 0.4,
@@ -65,12 +30,71 @@ constexpr StreetClutter kCluttered{.kerb_line = 0.3,
 constexpr Slopes kSloping{
     .along_per_m = 1.0 / 300.0, .across_per_m = 1.0 / 200.0, .twist_per_m = 1.0 / 1000.0};
 
-Nuisances clean() {
-  Nuisances nuisances;
-  nuisances.calibration = {0.0, 0.0, 0.0};
-  nuisances.body = {0.0, 0.0};
-  nuisances.weather = Weather::kClearNoon;
-  return nuisances;
+struct Entry {
+  NuisanceSet set;
+  std::string_view name;
+  std::string_view description;
+  /// Makes this set of the usual nuisances.
+  void (*change)(Nuisances& nuisances);
+};
+
+constexpr std::array<Entry, kNuisanceSets> kEntries{{
+    {NuisanceSet::kStandard, "standard",
+     "usual nuisances; 1 or 2 cameras missing in 15 %, exposures within 10 ms",
+     [](Nuisances& nuisances) {
+       nuisances.missing_cameras.probability = 0.15;
+       nuisances.desynchronisation.spread_s = 0.01;
+     }},
+    {NuisanceSet::kSixCameras, "six_cameras", "usual nuisances, six cameras that expose at once",
+     [](Nuisances&) {}},
+    {NuisanceSet::kClean, "clean", "exact calibration, level body, clear noon",
+     [](Nuisances& nuisances) {
+       nuisances.calibration = {0.0, 0.0, 0.0};
+       nuisances.body = {0.0, 0.0};
+       nuisances.weather = Weather::kClearNoon;
+     }},
+    {NuisanceSet::kNight, "night", "always night",
+     [](Nuisances& nuisances) { nuisances.weather = Weather::kNight; }},
+    {NuisanceSet::kRain, "rain", "always rain",
+     [](Nuisances& nuisances) { nuisances.weather = Weather::kRain; }},
+    {NuisanceSet::kOcclusion, "occlusion", "ten more standing vehicles",
+     [](Nuisances& nuisances) { nuisances.extra_vehicles = 10; }},
+    {NuisanceSet::kWornPaint, "worn_paint", "paint twice as worn",
+     [](Nuisances& nuisances) { nuisances.paint_wear_factor = 2.0; }},
+    {NuisanceSet::kMapErrors, "map_errors", "10 % missing, 10 % doubled, shifted by 0.15 m",
+     [](Nuisances& nuisances) { nuisances.map_errors = kWrongMap; }},
+    {NuisanceSet::kMapHabits, "map_habits",
+     "dividers end 5 to 30 m early or late, boundaries up to 0.7 m inside, across mouths, double",
+     [](Nuisances& nuisances) { nuisances.map_habits = kHabitualMap; }},
+    {NuisanceSet::kColour, "colour", "casts up to 25 %, saturation 0 to 1.5, a quarter grey",
+     [](Nuisances& nuisances) { nuisances.looks = kColourful; }},
+    {NuisanceSet::kClutter, "clutter",
+     "lines at kerbs, studs, boxes, works, hard shadows, bollards, railings, people",
+     [](Nuisances& nuisances) { nuisances.clutter = kCluttered; }},
+    {NuisanceSet::kCalibration, "calibration", "cameras off by 0.2 degrees and 2 cm",
+     [](Nuisances& nuisances) {
+       nuisances.calibration.rotation_rad = radians(0.2);
+       nuisances.calibration.position_m = 0.02;
+     }},
+    {NuisanceSet::kPitch, "pitch", "body pitches and rolls by 1 degree",
+     [](Nuisances& nuisances) { nuisances.body.tilt_rad = radians(1.0); }},
+    {NuisanceSet::kSlopes, "slopes", "crests and sags of 300 m radius and more, camber, banks",
+     [](Nuisances& nuisances) { nuisances.slopes = kSloping; }},
+    {NuisanceSet::kRigs, "rigs", "another rig for each frame, half as various as in training",
+     [](Nuisances& nuisances) { nuisances.rig_variety = 0.5; }},
+    {NuisanceSet::kMissingCamera, "missing_camera", "exactly one camera missing",
+     [](Nuisances& nuisances) { nuisances.missing_cameras = {.probability = 1.0, .most = 1}; }},
+    {NuisanceSet::kUnsynchronised, "unsynchronised", "each camera within 50 ms of the pose's time",
+     [](Nuisances& nuisances) { nuisances.desynchronisation.spread_s = 0.05; }},
+    {NuisanceSet::kUnsynchronisedUncompensated, "unsynchronised_uncompensated",
+     "the same without motion compensation",
+     [](Nuisances& nuisances) {
+       nuisances.desynchronisation = {.spread_s = 0.05, .compensated = false};
+     }},
+}};
+
+const Entry& entry_of(NuisanceSet set) {
+  return kEntries[static_cast<size_t>(set)];
 }
 
 }  // namespace
@@ -83,62 +107,7 @@ std::array<NuisanceSet, kNuisanceSets> all_nuisance_sets() {
 
 Nuisances nuisances_of(NuisanceSet set) {
   Nuisances nuisances;
-  switch (set) {
-    case NuisanceSet::kStandard:
-      nuisances.missing_cameras.probability = 0.15;
-      nuisances.desynchronisation.spread_s = 0.01;
-      break;
-    case NuisanceSet::kSixCameras:
-      break;
-    case NuisanceSet::kClean:
-      return clean();
-    case NuisanceSet::kNight:
-      nuisances.weather = Weather::kNight;
-      break;
-    case NuisanceSet::kRain:
-      nuisances.weather = Weather::kRain;
-      break;
-    case NuisanceSet::kOcclusion:
-      nuisances.extra_vehicles = 10;
-      break;
-    case NuisanceSet::kWornPaint:
-      nuisances.paint_wear_factor = 2.0;
-      break;
-    case NuisanceSet::kMapErrors:
-      nuisances.map_errors = kWrongMap;
-      break;
-    case NuisanceSet::kMapHabits:
-      nuisances.map_habits = kHabitualMap;
-      break;
-    case NuisanceSet::kColour:
-      nuisances.looks = kColourful;
-      break;
-    case NuisanceSet::kClutter:
-      nuisances.clutter = kCluttered;
-      break;
-    case NuisanceSet::kCalibration:
-      nuisances.calibration.rotation_rad = radians(0.2);
-      nuisances.calibration.position_m = 0.02;
-      break;
-    case NuisanceSet::kPitch:
-      nuisances.body.tilt_rad = radians(1.0);
-      break;
-    case NuisanceSet::kSlopes:
-      nuisances.slopes = kSloping;
-      break;
-    case NuisanceSet::kRigs:
-      nuisances.rig_variety = 0.5;
-      break;
-    case NuisanceSet::kMissingCamera:
-      nuisances.missing_cameras = {.probability = 1.0, .most = 1};
-      break;
-    case NuisanceSet::kUnsynchronised:
-      nuisances.desynchronisation.spread_s = 0.05;
-      break;
-    case NuisanceSet::kUnsynchronisedUncompensated:
-      nuisances.desynchronisation = {.spread_s = 0.05, .compensated = false};
-      break;
-  }
+  entry_of(set).change(nuisances);
   return nuisances;
 }
 

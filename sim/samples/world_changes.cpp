@@ -33,7 +33,7 @@ constexpr double kLongestStep_m = 4.0;
 constexpr double kNearestGhost_m = 1.5;
 constexpr double kFarthestGhost_m = 4.0;
 
-/// The body of the ego vehicle.
+/// The body of the own vehicle.
 VehicleBody ego_at(const Se2& map_from_vehicle) {
   VehicleBody ego;
   ego.centre = map_from_vehicle * Eigen::Vector2d(kAxleToMiddle_m, 0.0);

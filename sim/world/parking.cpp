@@ -25,30 +25,40 @@ void park(const Carriageway& side, double station_m, double right_m, WorldBuilde
   builder.world().parked.push_back(body);
 }
 
+void park_in_bays(const Carriageway& side, WorldBuilder& builder) {
+  const Interval bays = side.bays();
+  const double half_m = 0.5 * side.bay_m;
+  for (double s = bays.begin_m + half_m; s + half_m <= bays.end_m; s += side.bay_m) {
+    if (!builder.random().chance(builder.town().parking_occupancy)) continue;
+    park(side, s, side.lanes_edge(s) + 0.5 * side.parking_m, builder);
+  }
+}
+
+/// Vehicles that stand half on the pavement.
+void park_on_kerb(const Carriageway& side, WorldBuilder& builder) {
+  for (double s = side.begin_m + 12.0; s < side.end_m - 12.0; s += kKerbsideSpacing_m) {
+    if (!builder.random().chance(0.4 * builder.town().parking_occupancy)) continue;
+    park(side, s, side.kerb(s) + 0.4, builder);
+  }
+}
+
+/// Whether there is a kerb with enough room behind it.
+bool has_room_on_kerb(const EdgeStyle& edge) {
+  return edge.boundary == Appearance::kKerb && edge.verge_m + edge.sidewalk_m > 1.5;
+}
+
 }  // namespace
 
 void add_parked_vehicles(const RoadNetwork& network, WorldBuilder& builder) {
-  Random& random = builder.random();
-  const TownStyle& town = builder.town();
   for (const Road& road : network.roads) {
     for (size_t i = 0; i < 2; ++i) {
       const Carriageway& side = road.sides[i];
-      const bool half_on_kerb =
-          road.style.edges[i].boundary == Appearance::kKerb &&
-          road.style.edges[i].verge_m + road.style.edges[i].sidewalk_m > 1.5 &&
-          random.chance(0.5 * town.parking_chance);
+      const bool on_kerb = has_room_on_kerb(road.style.edges[i]) &&
+                           builder.random().chance(0.5 * builder.town().parking_chance);
       if (side.parking_m > 0.0) {
-        const Interval bays = side.bays();
-        const double half_m = 0.5 * side.bay_m;
-        for (double s = bays.begin_m + half_m; s + half_m <= bays.end_m; s += side.bay_m) {
-          if (!random.chance(town.parking_occupancy)) continue;
-          park(side, s, side.lanes_edge(s) + 0.5 * side.parking_m, builder);
-        }
-      } else if (half_on_kerb) {
-        for (double s = side.begin_m + 12.0; s < side.end_m - 12.0; s += kKerbsideSpacing_m) {
-          if (random.chance(0.4 * town.parking_occupancy))
-            park(side, s, side.kerb(s) + 0.4, builder);
-        }
+        park_in_bays(side, builder);
+      } else if (on_kerb) {
+        park_on_kerb(side, builder);
       }
     }
   }

@@ -1,7 +1,4 @@
 // Tests the doctor on machines that are folders.
-#include <fstream>
-#include <map>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -9,48 +6,15 @@
 #include "command/doctor/config_checks.h"
 #include "command/doctor/doctor_command.h"
 #include "command/doctor/machine_checks.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/command/fake_machine.h"
 
 namespace bevloc::command {
 namespace {
 
-using testing::ElementsAre;
+using test::FakeMachine;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
-
-/// A machine whose files lie in a folder of the test.
-class FakeMachine final : public Machine {
- public:
-  std::filesystem::path root() const override { return folder_.path(); }
-  ProcessLimits limits() const override { return process_limits; }
-  bool clock_is_synchronous() const override { return synchronous; }
-  Result<int64_t> free_bytes(const std::filesystem::path&) const override { return free; }
-  bool may_use(const std::filesystem::path&) const override { return permitted; }
-  Result<std::string> run(const std::vector<std::string>& words) const override {
-    const auto answer = programs.find(words.front());
-    if (answer == programs.end()) return fail("{}: missing", words.front());
-    return answer->second;
-  }
-
-  std::vector<drivers::GpioChipInfo> gpio_chips() const override { return chips; }
-  Result<std::vector<std::string>> libcamera_ids() const override { return camera_ids; }
-
-  void put(const std::string& file, const std::string& text) {
-    std::filesystem::create_directories(real(file).parent_path());
-    std::ofstream(real(file)) << text;
-  }
-
-  ProcessLimits process_limits;
-  bool synchronous = true;
-  bool permitted = true;
-  int64_t free = int64_t{10} << 30;
-  std::map<std::string, std::string> programs;  ///< what they print
-  std::vector<drivers::GpioChipInfo> chips;
-  std::vector<std::string> camera_ids;
-
- private:
-  test::TemporaryFolder folder_;
-};
 
 firmware::Config socketcan_config(const std::string& interface) {
   firmware::Config config;
@@ -118,6 +82,28 @@ TEST_F(DoctorTest, FindsModulesThatAreLoadedBuiltInOrMissing) {
   EXPECT_EQ(missing.fix, "sudo modprobe uvcvideo");
 }
 
+/// modules.builtin has the names of the files, with '-' where the kernel's names have '_'.
+TEST_F(DoctorTest, ReadsMinusAndUnderscoreInNamesOfModulesAsEqual) {
+  machine_.put("/proc/sys/kernel/osrelease", "6.1.0\n");
+  machine_.put("/lib/modules/6.1.0/modules.builtin", "kernel/net/can/can-gw.ko\n");
+  EXPECT_EQ(check_module(machine_, "can_gw", Level::kProblem).found, "built in");
+  EXPECT_EQ(check_module(machine_, "can_isotp", Level::kProblem).level, Level::kProblem);
+}
+
+TEST(DoctorOfCanModules, AcceptsThoseThatTheKernelLoadsByItself) {
+  FakeMachine machine;
+  const auto levels = [&machine] {
+    const Findings findings = check_can_interface(machine, socketcan_config("can0"));
+    return std::vector{findings[0].level, findings[1].level};
+  };
+  machine.put("/proc/sys/kernel/osrelease", "6.1.0\n");
+  EXPECT_EQ(levels(), (std::vector{Level::kProblem, Level::kProblem}));
+  machine.put("/lib/modules/6.1.0/modules.dep",
+              "kernel/net/can/can.ko.xz:\n"
+              "kernel/net/can/can-raw.ko.xz: kernel/net/can/can.ko.xz\n");
+  EXPECT_EQ(levels(), (std::vector{Level::kOk, Level::kOk}));
+}
+
 TEST_F(DoctorTest, JudgesTheCanController) {
   machine_.programs["ip"] = ip_answer("ERROR-ACTIVE", 0, 100);
   EXPECT_EQ(can0().level, Level::kOk);
@@ -154,6 +140,30 @@ TEST_F(DoctorTest, WarnsOfAControllerThatStaysOff) {
   const Findings findings = check_can_interface(machine_, socketcan_config("can0"));
   EXPECT_THAT(findings.back().found, HasSubstr("restart-ms 0"));
   EXPECT_THAT(findings.back().fix, HasSubstr("restart-ms 100"));
+}
+
+/// A controller's settings do not help an Ethernet interface, and taking it down cuts the
+/// connection.
+TEST_F(DoctorTest, RefusesAnInterfaceThatIsNoCanInterface) {
+  machine_.put("/sys/class/net/can0/type", "1\n");
+  machine_.programs["ip"] = R"([{"flags":["UP"]}])";
+  const Findings findings = check_can_interface(machine_, socketcan_config("can0"));
+  EXPECT_EQ(findings.back().level, Level::kProblem);
+  EXPECT_THAT(findings.back().found, HasSubstr("no CAN interface"));
+  for (const Finding& finding : findings) EXPECT_THAT(finding.fix, Not(HasSubstr("down")));
+}
+
+TEST_F(DoctorTest, JudgesStateAndRestartOnlyOfAController) {
+  const auto findings = [this](const std::string& kind) {
+    machine_.programs["ip"] = R"([{"flags":["UP"],"linkinfo":{"info_kind":")" + kind + R"("}}])";
+    return check_can_interface(machine_, socketcan_config("can0"));
+  };
+  for (const char* kind : {"vcan", "vxcan"}) {
+    EXPECT_EQ(worst_of(findings(kind)), Level::kOk) << kind;
+    EXPECT_THAT(findings(kind).back().found, HasSubstr("virtual"));
+  }
+  // As the older drivers of serial lines, which show no settings.
+  EXPECT_EQ(worst_of(findings("")), Level::kOk);
 }
 
 TEST_F(DoctorTest, NamesAMissingInterface) {
@@ -265,6 +275,20 @@ TEST_F(DoctorTest, ReadsTheStateOfTheUnit) {
   EXPECT_EQ(findings("active", "disabled").back().fix, "sudo systemctl enable bevlocd");
   machine_.programs["systemctl"] = "LoadState=not-found\n";
   EXPECT_THAT(check_unit(machine_).front().found, HasSubstr("no bevlocd.service"));
+}
+
+TEST_F(DoctorTest, TellsWhyAUnitThatIsThereIsNotLoaded) {
+  const auto finding = [this](const std::string& state) {
+    machine_.programs["systemctl"] = "LoadState=" + state + "\nActiveState=inactive\n";
+    return check_unit(machine_).front();
+  };
+  EXPECT_EQ(finding("masked").level, Level::kWarning);
+  EXPECT_EQ(finding("masked").fix, "sudo systemctl unmask bevlocd");
+  for (const char* state : {"bad-setting", "error"}) {
+    EXPECT_EQ(finding(state).level, Level::kProblem);
+    EXPECT_THAT(finding(state).found, HasSubstr(state));
+    EXPECT_EQ(finding(state).fix, "systemd-analyze verify bevlocd.service");
+  }
 }
 
 TEST_F(DoctorTest, AConfigurationWithAMistakeIsAProblem) {

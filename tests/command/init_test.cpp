@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "command/init/init_command.h"
 #include "common/files.h"
@@ -89,6 +90,22 @@ TEST_F(InitTest, KeepsTheOldFileWhereItCannotWrite) {
   std::filesystem::current_path(kTree);
   ASSERT_FALSE(init({"--yes", "--force"}));
   EXPECT_EQ(written(), "mine");
+}
+
+/// The daemon runs as another user than the one who writes the configuration.
+TEST_F(InitTest, WritesANewFileThatAllMayRead) {
+  std::filesystem::current_path(kTree);
+  const auto init_with_umask_077 = [this](std::vector<std::string> arguments) {
+    const mode_t before = umask(077);
+    const auto verdict = init(std::move(arguments));
+    umask(before);
+    return verdict;
+  };
+  ASSERT_TRUE(init_with_umask_077({"--yes"}));
+  EXPECT_EQ(std::filesystem::status(file_).permissions(), std::filesystem::perms{0644});
+  std::filesystem::permissions(file_, std::filesystem::perms{0640});
+  ASSERT_TRUE(init_with_umask_077({"--yes", "--force"}));
+  EXPECT_EQ(std::filesystem::status(file_).permissions(), std::filesystem::perms{0640});
 }
 
 TEST_F(InitTest, WritesRealCamerasAndSaysThatTheyAreNotThere) {
@@ -181,6 +198,18 @@ TEST(ConfigurationText, KeepsStrangeNames) {
   EXPECT_EQ(config.map_file, "/folder/below/town.osm");
   EXPECT_THAT(configuration_text(answers, "/folder"), HasSubstr("file: \"below/town.osm\""));
   EXPECT_EQ(config.rig_file, "/x/rig.yaml");
+}
+
+TEST(ConfigurationText, SaysWhichIdsBelongToAPlug) {
+  const Answers answers{.driver = kV4l2Cameras,
+                        .ids = {"a", "b", "c", "d", "e", "f"},
+                        .rig = "rig.yaml",
+                        .map = "town.osm",
+                        .model = "model.onnx",
+                        .can = "can0"};
+  const std::string text = configuration_text(answers, ".");
+  EXPECT_THAT(text, HasSubstr("An id with a serial number stays with its camera"));
+  EXPECT_THAT(text, HasSubstr("belongs to the plug"));
 }
 
 }  // namespace

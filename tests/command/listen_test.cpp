@@ -86,6 +86,20 @@ TEST_F(ListenTest, QuietJsonIsOneObjectOfTotals) {
   EXPECT_EQ(totals["other_frames"], 1);
 }
 
+TEST_F(ListenTest, ALogOfSeveralInterfacesIsCheckedByInterface) {
+  const test::TemporaryFolder folder;
+  const std::string log = folder.path() / "can.log";
+  std::ofstream(log) << "(0000000005.000000)  can0 500#AD4481FF00007AD0\n"
+                        "(0000000005.000000) vcan1 500#AD4481FF00007AD0\n"
+                        "DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total drops 3)\n";
+  const Heard heard = listen({log});
+  ASSERT_TRUE(heard.status) << heard.status.error().message;
+  EXPECT_THAT(heard.output, StartsWith("5.000000 LOC_Status ok "));
+  EXPECT_THAT(heard.output, HasSubstr("\n5.000000 LOC_Status ok "));
+  EXPECT_THAT(heard.output,
+              HasSubstr("\nLOC_Status                            2          0        0\n"));
+}
+
 TEST_F(ListenTest, QuietAndCountExcludeEachOther) {
   EXPECT_THROW(parse({"--quiet", "--count", "3", "can0"}), CLI::ExcludesError);
 }

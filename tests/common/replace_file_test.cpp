@@ -3,6 +3,8 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "common/files.h"
 #include "tests/support/temporary_folder.h"
@@ -22,6 +24,36 @@ TEST(ReplaceFile, KeepsEachEarlierContentUnderANameOfItsOwn) {
   EXPECT_EQ(*read_file(file.string() + ".bak2"), "second");
   EXPECT_FALSE(std::filesystem::exists(file.string() + ".bak3"));
   EXPECT_FALSE(std::filesystem::exists(file.string() + ".new"));
+}
+
+TEST(ReplaceFile, KeepsTheModeOfTheFileAndOfItsBackup) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "rig.yaml";
+  const std::filesystem::path backup = folder / "rig.yaml.bak";
+  ASSERT_TRUE(write_file(file, "first"));
+  for (const auto mode : {std::filesystem::perms{0640}, std::filesystem::perms{0600}}) {
+    std::filesystem::permissions(file, mode);
+    std::filesystem::remove(backup);
+    ASSERT_TRUE(replace_file(file, "second"));
+    EXPECT_EQ(std::filesystem::status(file).permissions(), mode);
+    ASSERT_TRUE(replace_file_with_backup(file, "third"));
+    EXPECT_EQ(std::filesystem::status(file).permissions(), mode);
+    EXPECT_EQ(std::filesystem::status(backup).permissions(), mode);
+  }
+}
+
+TEST(ReplaceFile, KeepsTheOwner) {
+  constexpr uid_t kUser = 1234;
+  constexpr gid_t kGroup = 2345;
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "rig.yaml";
+  ASSERT_TRUE(write_file(file, "first"));
+  if (chown(file.c_str(), kUser, kGroup) != 0) GTEST_SKIP() << "needs root";
+  ASSERT_TRUE(replace_file(file, "second"));
+  struct stat found {};
+  ASSERT_EQ(stat(file.c_str(), &found), 0);
+  EXPECT_EQ(found.st_uid, kUser);
+  EXPECT_EQ(found.st_gid, kGroup);
 }
 
 TEST(ReplaceFile, LeavesTheOldFileWhereItCannotWrite) {

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import importlib.machinery
-import importlib.util
 import io
 import sys
 import tempfile
@@ -16,17 +14,7 @@ from unittest import mock
 
 import yaml
 
-ROOT = Path(__file__).resolve().parents[2]
-
-
-def load() -> ModuleType:
-    loader = importlib.machinery.SourceFileLoader("evaluate_script", str(ROOT / "script/evaluate"))
-    spec = importlib.util.spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[loader.name] = module
-    loader.exec_module(module)
-    return module
+from tests.support.script_module import load_script
 
 
 class EvaluateTest(unittest.TestCase):
@@ -34,7 +22,7 @@ class EvaluateTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        cls.script = load()
+        cls.script = load_script("evaluate")
 
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()

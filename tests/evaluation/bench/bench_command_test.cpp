@@ -28,7 +28,7 @@ Status run(std::vector<std::string> arguments, const std::string& config = kConf
   arguments.insert(arguments.begin(), {"bench", "--config", config});
   std::ranges::reverse(arguments);  // as CLI11 expects
   app.parse(arguments);
-  EXPECT_TRUE(command.chosen());
+  EXPECT_TRUE(app.got_subcommand("bench"));
   return command.run();
 }
 

@@ -136,6 +136,23 @@ TEST(CampaignTest, LocalizesWithoutAFault) {
   EXPECT_EQ(outcome.detected_by, "");
 }
 
+TEST(CampaignTest, BoundsTheErrorsOfADriveWithoutAFault) {
+  const RunOutcome outcome = run_mode("none");
+  ASSERT_GT(outcome.valid, 0);
+  const PoseCounts all{outcome.valid, outcome.valid, outcome.valid};
+  EXPECT_EQ(outcome.with_level, all);
+  EXPECT_EQ(outcome.misleading, PoseCounts{});
+  EXPECT_EQ(outcome.hazardous, PoseCounts{});
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const auto share_of = [&](const PoseCounts& poses) {
+      return static_cast<double>(poses[axis]) / static_cast<double>(outcome.valid);
+    };
+    EXPECT_GT(share_of(outcome.within_sigma[0]), 0.6) << "axis " << axis;
+    EXPECT_GT(share_of(outcome.within_sigma[2]), 0.99) << "axis " << axis;
+    EXPECT_GT(share_of(outcome.available), 0.95) << "axis " << axis;
+  }
+}
+
 TEST(CampaignTest, AnApplianceThatWakesUpNamesTheGapOfItsClock) {
   const RunOutcome outcome = run_mode("suspended");
   EXPECT_EQ(outcome.detected_by, "not valid") << "it is silent while it sleeps";

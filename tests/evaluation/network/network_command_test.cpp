@@ -40,7 +40,7 @@ Status run(std::vector<std::string> arguments, const std::string& model = kModel
   arguments.insert(arguments.begin(), {"network", "--model", model});
   std::ranges::reverse(arguments);  // as CLI11 expects
   app.parse(arguments);
-  EXPECT_TRUE(command.chosen());
+  EXPECT_TRUE(app.got_subcommand("network"));
   return command.run();
 }
 

@@ -3,6 +3,7 @@
 
 #include "common/files.h"
 #include "evaluation/recording/replay_setup.h"
+#include "tests/evaluation/recording/replay_config.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
@@ -38,12 +39,7 @@ TEST(CandumpReplay, AcceptsPausesAndFineDisorder) {
 
 /// A replay has no gpsd. Without positions it would find no pose.
 TEST(CandumpReplay, RefusesAConfigurationWithGpsd) {
-  const std::string source = BEVLOC_SOURCE_DIR;
-  const std::string text =
-      "cameras: {driver: replay, recording: pictures}\ncalibration: {rig: " + source +
-      "/config/rig_demo.yaml}\nmap: {file: " + source +
-      "/tests/pipeline/map/fixtures/street.osm}\nmodel: {file: " + source +
-      "/models/nano.onnx}\ncan: {driver: mock}\n";
+  const std::string text = test::replay_config_text();
   const test::TemporaryFolder folder;
   ReplayOverrides overrides;
   overrides.config = folder / "config.yaml";

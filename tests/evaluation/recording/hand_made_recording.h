@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -18,8 +20,11 @@ namespace bevloc::test {
 /// One file, whose log times are those of the appliance's clock.
 class HandMadeRecording {
  public:
-  explicit HandMadeRecording(std::filesystem::path path) : path_(std::move(path)) {
+  explicit HandMadeRecording(std::filesystem::path path,
+                             std::map<std::string, std::string> metadata = {})
+      : path_(std::move(path)) {
     firmware::RecordingHead head;
+    head.metadata = std::move(metadata);
     head.metadata.emplace(firmware::kClockOffsetKey, "0");
     auto file = firmware::RecordingFile::create(path_, head, ns_of(0.0));
     if (!file) throw std::runtime_error(file.error().message);

@@ -8,6 +8,7 @@
 #include "evaluation/report/charts.h"
 #include "evaluation/report/report_command.h"
 #include "tests/evaluation/recording/hand_made_recording.h"
+#include "tests/evaluation/refusal.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
@@ -65,6 +66,28 @@ TEST(Report, ADamagedPictureIsLeftOutAndNamed) {
   EXPECT_EQ(occurrences(text, "no readable picture"), 1U);
   EXPECT_THAT(text, HasSubstr("<img alt='front_left'"));
   EXPECT_THAT(text, Not(HasSubstr("<img alt='front'")));
+}
+
+/// `bevloc report --out recording/*.mcap` takes the first file of the recording as the page.
+TEST(Report, NeverWritesOverTheRecording) {
+  const test::TemporaryFolder folder;
+  const auto recording = [&folder](const char* name) {
+    test::HandMadeRecording made(folder / name);
+    made.add_pose(0.0, 0.0);
+    return made.finish().string();
+  };
+  const std::string first = recording("bevloc-0001.mcap");
+  const std::string bytes = read_file(first).value();
+  const std::string second = recording("bevloc-0002.mcap");
+  EXPECT_THAT(test::refusal_of<ReportCommand>({"report", "--out", first, second}),
+              HasSubstr("wanted .html"));
+  EXPECT_THAT(test::refusal_of<ReportCommand>({"report", first, "--out", first}),
+              HasSubstr("wanted .html"));
+  const std::filesystem::path page = folder / "recording.html";
+  std::filesystem::create_symlink(first, page);
+  EXPECT_THAT(test::refusal_of<ReportCommand>({"report", first, "--out", page.string()}),
+              HasSubstr("found a file to write that is also read"));
+  EXPECT_EQ(read_file(first).value(), bytes);
 }
 
 TEST(TrackMap, JoinsNothingAcrossAGap) {

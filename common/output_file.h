@@ -1,15 +1,16 @@
-// Keeps commands from writing over the files that they read, and from running long before they find
-// out that they cannot write their result.
+// Writes the files that options name. Its checks keep commands from writing over the files that
+// they read, and from running long before they find out that they cannot write their result.
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <unistd.h>
 
+#include "common/files.h"
 #include "common/result.h"
 #include "common/writable_folder.h"
 
@@ -17,7 +18,7 @@ namespace bevloc {
 
 /// Fails if `out` is one of the files `inputs`, even under another name. Ignores empty names.
 inline Status check_output(const std::filesystem::path& out,
-                           std::initializer_list<std::filesystem::path> inputs) {
+                           const std::vector<std::filesystem::path>& inputs) {
   for (const std::filesystem::path& in : inputs) {
     std::error_code missing;
     if (!std::filesystem::equivalent(in, out, missing)) continue;
@@ -60,6 +61,12 @@ inline Status check_extension(const std::filesystem::path& out, std::string_view
   if (found == wanted) return {};
   return fail("{}: found the extension \"{}\" of a file to write, wanted {}", out.string(), found,
               wanted);
+}
+
+/// Writes the file that an option such as --json names. Does nothing if `out` is empty, which means
+/// that the option is not given.
+inline Status write_option_file(const std::filesystem::path& out, std::string_view bytes) {
+  return out.empty() ? Status() : write_file(out, bytes);
 }
 
 }  // namespace bevloc

@@ -1,0 +1,18 @@
+// A configuration for replays, without a section that a replay refuses.
+#pragma once
+
+#include <string>
+
+namespace bevloc::test {
+
+/// Its cameras are the folders "pictures", its bus is a mock. Rig, map and model are those of this
+/// tree.
+inline std::string replay_config_text() {
+  const std::string source = BEVLOC_SOURCE_DIR;
+  return "cameras: {driver: replay, recording: pictures}\ncalibration: {rig: " + source +
+         "/config/rig_demo.yaml}\nmap: {file: " + source +
+         "/tests/pipeline/map/fixtures/street.osm}\nmodel: {file: " + source +
+         "/models/nano.onnx}\ncan: {driver: mock}\n";
+}
+
+}  // namespace bevloc::test
