@@ -163,9 +163,10 @@ Result<CandumpEntry> parse_candump_line(std::string_view line, std::string_view 
   };
   const size_t time_end = line.find(") ");
   if (!line.starts_with('(') || time_end == std::string_view::npos) return refuse();
-  const std::string_view rest = line.substr(time_end + 2);
+  std::string_view rest = line.substr(time_end + 2);
+  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
   const size_t interface_end = rest.find(' ');
-  if (interface_end == std::string_view::npos || interface_end == 0) return refuse();
+  if (interface_end == std::string_view::npos) return refuse();
   std::string_view frame_text = rest.substr(interface_end + 1);
   // Newer versions of candump append the direction (R or T).
   if (frame_text.ends_with(" R") || frame_text.ends_with(" T")) frame_text.remove_suffix(2);
@@ -177,19 +178,31 @@ Result<CandumpEntry> parse_candump_line(std::string_view line, std::string_view 
                       parsed->frame, parsed->error};
 }
 
-Result<std::vector<CandumpEntry>> read_candump(std::istream& log, std::string_view name) {
-  std::vector<CandumpEntry> entries;
+Result<std::optional<CandumpEntry>> CandumpReader::next() {
+  constexpr std::string_view kDropped = "DROPCOUNT: ";
   std::string line;
-  for (int number_of_line = 1; std::getline(log, line); ++number_of_line) {
+  while (std::getline(log_, line)) {
+    ++line_number_;
     if (line.ends_with('\r')) line.pop_back();
-    if (line.empty()) continue;
-    auto entry = parse_candump_line(line, fmt::format("{}:{}", name, number_of_line));
+    if (line.empty() || line.starts_with(kDropped)) continue;
+    auto entry = parse_candump_line(line, fmt::format("{}:{}", name_, line_number_));
     if (!entry) return tl::unexpected(entry.error());
-    entries.push_back(std::move(*entry));
+    return std::optional(std::move(*entry));
   }
   // A folder opens, but cannot be read.
-  if (log.bad()) return fail("{}: found no readable file, wanted a candump log", name);
-  return entries;
+  if (log_.bad()) return fail("{}: found no readable file, wanted a candump log", name_);
+  return std::nullopt;
+}
+
+Result<std::vector<CandumpEntry>> read_candump(std::istream& log, std::string_view name) {
+  CandumpReader reader(log, std::string(name));
+  std::vector<CandumpEntry> entries;
+  for (;;) {
+    auto entry = reader.next();
+    if (!entry) return tl::unexpected(entry.error());
+    if (!*entry) return entries;
+    entries.push_back(std::move(**entry));
+  }
 }
 
 Result<std::vector<CandumpEntry>> read_candump_file(const std::string& path) {

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cstdint>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "can/bus/error_frame.h"
@@ -44,10 +46,27 @@ std::string candump_line(std::chrono::nanoseconds time, std::string_view interfa
                          const ErrorFrame& error,
                          CandumpDigits digits = CandumpDigits::kMicroseconds);
 
-/// Fails for a line of any other form. The error names `place` ("file:line").
+/// Blanks may precede the interface, because candump aligns the names. Fails for a line of any
+/// other form. The error names `place` ("file:line").
 Result<CandumpEntry> parse_candump_line(std::string_view line, std::string_view place);
 
-/// Reads all lines of a log and skips empty lines. Fails at the first bad line and names file:line.
+/// Reads a log line by line. It skips empty lines and those in which candump says that its socket
+/// dropped frames (candump -d). One thread.
+class CandumpReader {
+ public:
+  /// The log must outlive the reader. Errors show `name` as the file.
+  CandumpReader(std::istream& log, std::string name) : log_(log), name_(std::move(name)) {}
+
+  /// Returns nothing at the end of the log. Fails for a bad line, and names file:line.
+  Result<std::optional<CandumpEntry>> next();
+
+ private:
+  std::istream& log_;
+  std::string name_;
+  int line_number_ = 0;
+};
+
+/// Reads a whole log. Fails at the first bad line.
 Result<std::vector<CandumpEntry>> read_candump(std::istream& log, std::string_view name);
 Result<std::vector<CandumpEntry>> read_candump_file(const std::string& path);
 

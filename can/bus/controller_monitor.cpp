@@ -35,11 +35,13 @@ void ControllerMonitor::take(const ErrorFrame& error) {
   condition_ = condition;
 }
 
-void ControllerMonitor::note_traffic() {
+bool ControllerMonitor::note_traffic() {
   BusCondition condition = condition_;
+  const bool was_off = condition.state == BusState::kOff;
   condition.faults = 0;
-  if (condition.state == BusState::kOff) condition.state = BusState::kActive;
+  if (was_off) condition.state = BusState::kActive;
   condition_ = condition;
+  return was_off;
 }
 
 }  // namespace bevloc::can

@@ -20,8 +20,11 @@ class ControllerMonitor {
 
   /// Call it when a frame of any node arrived. It shows that our controller is not bus-off, and
   /// clears the faults. A warning or passive state stays, because the error counters may still be
-  /// high.
-  void note_traffic();
+  /// high. Returns whether the controller was bus-off, and thus has restarted without a report.
+  bool note_traffic();
+
+  /// Call it when the controller is already bus-off at the start, because no report says so.
+  void note_bus_off() { condition_ = BusCondition{.state = BusState::kOff}; }
 
   /// Call it when the interface is down: its controller restarts without an error report.
   void reset() { condition_ = BusCondition{}; }

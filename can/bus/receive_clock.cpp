@@ -10,20 +10,19 @@ using std::chrono::nanoseconds;
 /// A frame does not wait longer than this in the socket.
 constexpr nanoseconds kMaxAge = std::chrono::seconds(10);
 
-/// A larger jump between the clocks shows that the controller has restarted, because no interrupt
-/// is that late.
-constexpr Duration kMaxJump = std::chrono::seconds(1);
+/// The difference of the clocks is the smallest one of one to two periods. They are long enough for
+/// a few frames, so that one of them had a fast interrupt. They are so short that the drift of the
+/// clocks within them is small: at 500 ppm it is at most 0.15 ms.
+constexpr nanoseconds kPeriod = std::chrono::milliseconds(150);
+/// If the difference grows by more than this, the controller's clock has stood still or was set
+/// back, because no interrupt is that late.
+constexpr Duration kMaxLatency = std::chrono::milliseconds(20);
 
 /// A larger change of the difference of the clocks from one frame to the next is a step: somebody
 /// has set CLOCK_REALTIME. Time services change its rate by at most 500 ppm.
 constexpr Duration kMinStep = std::chrono::milliseconds(1);
 /// For this long after a step, a frame may still have a stamp from before the step.
 constexpr Duration kStepLasts = kMaxAge;
-
-/// The largest drift between the controller's clock and ours: 100 ppm.
-Duration drift_in(nanoseconds time) {
-  return time / 10'000;
-}
 
 }  // namespace
 
@@ -61,30 +60,32 @@ void ReceiveClock::watch_realtime(const Now& now) {
       realtime_minus_steady_ ? difference - *realtime_minus_steady_ : Duration{};
   realtime_minus_steady_ = difference;
   if (stepped_ && now.steady - *stepped_ > kStepLasts) stepped_.reset();
-  // A slow change between two frames that are far apart is no step.
+  // A slow change (500 ppm) between two frames that are far apart is no step.
   const Duration passed = now.steady - watched_;
   watched_ = now.steady;
-  if (std::chrono::abs(change) < kMinStep + 5 * drift_in(passed)) return;
+  if (std::chrono::abs(change) < kMinStep + passed / 2000) return;
   latest_step_ = change;
   stepped_ = now.steady;
-  steady_minus_hardware_.reset();
+  offset_.reset();
 }
 
 /// The kernel's stamp is late by the interrupt's latency, and never early. So the smallest
-/// difference of the two clocks is the most accurate one. It may grow at the rate of the largest
-/// drift.
+/// difference of the two clocks is the most accurate one. Old differences are forgotten, because
+/// the clocks drift: a time service may steer ours, and the controller's oscillator may be cheap.
 Time ReceiveClock::from_hardware(nanoseconds hardware, Time by_kernel) {
   const Duration difference = by_kernel.time_since_epoch() - hardware;
-  const bool known = steady_minus_hardware_ && hardware >= last_hardware_ &&
-                     std::chrono::abs(difference - *steady_minus_hardware_) < kMaxJump;
-  if (known) {
-    const Duration grown = *steady_minus_hardware_ + drift_in(hardware - last_hardware_);
-    steady_minus_hardware_ = std::min(difference, grown);
+  const int64_t period = hardware / kPeriod;
+  const bool known =
+      offset_ && period >= offset_->period && difference - offset_->smallest() <= kMaxLatency;
+  if (!known) {
+    offset_ = {period, difference, difference};
+  } else if (period == offset_->period) {
+    offset_->in_period = std::min(offset_->in_period, difference);
   } else {
-    steady_minus_hardware_ = difference;
+    const bool is_next = period == offset_->period + 1;
+    offset_ = {period, difference, is_next ? offset_->in_period : difference};
   }
-  last_hardware_ = hardware;
-  return Time(hardware + *steady_minus_hardware_);
+  return Time(hardware + offset_->smallest());
 }
 
 }  // namespace bevloc::can

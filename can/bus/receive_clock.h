@@ -1,6 +1,7 @@
 // Converts time stamps of the kernel and of the CAN controller to the steady clock.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -48,8 +49,16 @@ class ReceiveClock {
   Duration latest_step_{};                         ///< the latest step of CLOCK_REALTIME
   std::optional<Time> stepped_;                    ///< when the latest step was noticed
 
-  std::optional<Duration> steady_minus_hardware_;
-  std::chrono::nanoseconds last_hardware_{};
+  /// The smallest differences of steady and hardware time in the latest period with a frame and in
+  /// the period before it. The controller's clock counts the periods.
+  struct Offset {
+    int64_t period = 0;
+    Duration in_period{};
+    Duration in_period_before{};
+
+    Duration smallest() const { return std::min(in_period, in_period_before); }
+  };
+  std::optional<Offset> offset_;
   Time last_ = Time::min();
 };
 

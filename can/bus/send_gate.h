@@ -51,7 +51,7 @@ class SendGate {
   bool is_stalled(Time now) const;
 
   /// Frees all places. Call it when the kernel's queue is empty: the interface went down, or the
-  /// controller restarted.
+  /// controller restarted while no frame was in the queue.
   void reset();
 
  private:

@@ -26,12 +26,16 @@ Result<std::unique_ptr<SocketCanBus>> SocketCanBus::open(const std::string& inte
                                                          const SocketCanOptions& options) {
   auto link = SocketCanLink::open(interface, options);
   if (!link) return tl::unexpected(link.error());
-  return std::unique_ptr<SocketCanBus>(new SocketCanBus(std::move(*link), options));
+  std::unique_ptr<SocketCanBus> bus(new SocketCanBus(std::move(*link), options));
+  // Drivers report only the change to bus-off.
+  if (bus->link_->is_bus_off()) bus->monitor_.note_bus_off();
+  return bus;
 }
 
-std::unique_ptr<SocketCanBus> SocketCanBus::from_descriptor(int descriptor) {
+std::unique_ptr<SocketCanBus> SocketCanBus::from_descriptor(int descriptor,
+                                                            const SocketCanOptions& options) {
   return std::unique_ptr<SocketCanBus>(
-      new SocketCanBus(std::make_unique<SocketCanLink>(descriptor), {}));
+      new SocketCanBus(std::make_unique<SocketCanLink>(descriptor), options));
 }
 
 SocketCanBus::SocketCanBus(std::unique_ptr<SocketCanLink> link, const SocketCanOptions& options)
@@ -47,8 +51,7 @@ SendResult SocketCanBus::send(const Frame& frame, Time now) {
   counters_.send_expired += queue_.drop_older_than(now - max_send_age_);
   queue_.offer([this](const Frame& next) { return write(next); });
   if (link_->is_down()) {
-    gate_.reset();
-    monitor_.reset();
+    note_down();
     counters_.send_bus_down += queue_.size();
     queue_.clear();
   }
@@ -87,7 +90,11 @@ std::optional<ReceivedFrame> SocketCanBus::receive() {
     message.msg_controllen = sizeof(control);
     const ssize_t size = recvmsg(link_->descriptor(), &message, MSG_DONTWAIT | MSG_TRUNC);
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0 && !is_no_room(errno)) link_->note(errno);
+    if (size < 0 && !is_no_room(errno)) {
+      link_->note(errno);
+      // The interface may be up again before the next send(), which then does not see the failure.
+      note_down();
+    }
     if (size <= 0) return std::nullopt;
 
     const Ancillary ancillary = ancillary_from(message);
@@ -96,12 +103,9 @@ std::optional<ReceivedFrame> SocketCanBus::receive() {
     if (const auto* error = std::get_if<ErrorFrame>(&read)) {
       take_error(*error);
     } else if (const auto* frame = std::get_if<Frame>(&read)) {
-      monitor_.note_traffic();
-      if (!is_own_echo(message)) {
-        gate_.note_alive(steady_now());
-        return stamped(*frame, ancillary);
-      }
-      take_echo(*frame, steady_now());
+      const bool is_echo = is_own_echo(message);
+      note_traffic(*frame, is_echo);
+      if (!is_echo) return stamped(*frame, ancillary);
     } else {
       ++counters_.receive_ignored;
     }
@@ -121,13 +125,35 @@ void SocketCanBus::take_error(const ErrorFrame& error) {
   if ((error.classes & CAN_ERR_BUSOFF) != 0) ++counters_.bus_off;
   if (says_frames_lost(error)) ++counters_.receive_overrun;
   monitor_.take(error);
-  // The controller has discarded the frames that it had to send, so no echo of them will come.
-  constexpr uint32_t kDiscarded = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED | CAN_ERR_TX_TIMEOUT;
-  if ((error.classes & kDiscarded) != 0) gate_.reset();
+  constexpr uint32_t kDiscarded = CAN_ERR_RESTARTED | CAN_ERR_TX_TIMEOUT;
+  has_discarded_ = has_discarded_ || (error.classes & kDiscarded) != 0;
+  free_places_of_discarded();
 }
 
-void SocketCanBus::take_echo(const Frame& frame, Time echoed) {
-  if (const auto latency = gate_.confirm(frame.id, echoed)) counters_.count_confirmation(*latency);
+/// A frame that the controller has discarded gets no echo. But the frames in the kernel's queue are
+/// still sent. New ones may follow only when it is empty. Otherwise, each restart would add old
+/// frames to the queue.
+void SocketCanBus::free_places_of_discarded() {
+  if (!has_discarded_ || link_->has_queued_frames()) return;
+  gate_.reset();
+  has_discarded_ = false;
+}
+
+/// An interface that is down has no frames to send, and its controller starts anew.
+void SocketCanBus::note_down() {
+  gate_.reset();
+  monitor_.reset();
+}
+
+void SocketCanBus::note_traffic(const Frame& frame, bool is_echo) {
+  const Time now = steady_now();
+  if (monitor_.note_traffic()) has_discarded_ = true;
+  if (!is_echo) {
+    gate_.note_alive(now);
+  } else if (const auto latency = gate_.confirm(frame.id, now)) {
+    counters_.count_confirmation(*latency);
+  }
+  free_places_of_discarded();
 }
 
 bool SocketCanBus::wait(Duration timeout) {

@@ -27,8 +27,10 @@ class SocketCanBus final : public Bus {
 
   /// Takes ownership of an open datagram descriptor that carries frames in the kernel's format,
   /// such as a socket pair on a kernel without CAN. It delivers no time stamps, so frames carry the
-  /// time of receive().
-  static std::unique_ptr<SocketCanBus> from_descriptor(int descriptor);
+  /// time of receive(). Nor does it deliver echoes, so frames with confirmed identifiers are held
+  /// back after the first one.
+  static std::unique_ptr<SocketCanBus> from_descriptor(int descriptor,
+                                                       const SocketCanOptions& options = {});
 
   SendResult send(const Frame& frame, Time now) override;
   std::optional<ReceivedFrame> receive() override;
@@ -41,14 +43,19 @@ class SocketCanBus final : public Bus {
 
   SendQueue::Answer write(const Frame& frame);
   void repair();
+  void note_down();
+  void free_places_of_discarded();
   void take_error(const ErrorFrame& error);
-  void take_echo(const Frame& frame, Time echoed);
+  void note_traffic(const Frame& frame, bool is_echo);
   ReceivedFrame stamped(const Frame& frame, const Ancillary& ancillary);
 
   const std::unique_ptr<SocketCanLink> link_;
   const Duration max_send_age_;
   SendQueue queue_;  // used by the sending thread only
   SendGate gate_;
+  /// Whether the controller has discarded frames that have a place in the gate. Used by the
+  /// receiving thread only.
+  bool has_discarded_ = false;
   ReceiveClock clock_;  // used by the receiving thread only
   ControllerMonitor monitor_;
   AtomicBusCounters counters_;

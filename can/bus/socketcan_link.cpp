@@ -1,5 +1,6 @@
 #include "can/bus/socketcan_link.h"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -8,10 +9,12 @@
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <linux/net_tstamp.h>
+#include <linux/sock_diag.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
+#include "common/files.h"
 #include "common/kernel_time.h"
 
 namespace bevloc::can {
@@ -125,6 +128,22 @@ Result<std::unique_ptr<SocketCanLink>> SocketCanLink::open(const std::string& in
 void SocketCanLink::note(int error) {
   if (is_gone(error)) lost_ = true;
   error_ = error;
+}
+
+/// The kernel charges a frame to its socket until a driver hands it to the controller. The copy
+/// that the driver keeps for the echo is not charged.
+bool SocketCanLink::has_queued_frames() const {
+  std::array<uint32_t, SK_MEMINFO_VARS> memory{};
+  socklen_t size = sizeof(memory);
+  return getsockopt(descriptor(), SOL_SOCKET, SO_MEMINFO, memory.data(), &size) == 0 &&
+         memory[SK_MEMINFO_WMEM_ALLOC] != 0;
+}
+
+/// A driver takes the carrier away when its controller goes bus-off. While the interface is down,
+/// the file cannot be read.
+bool SocketCanLink::is_bus_off() const {
+  const auto carrier = read_file("/sys/class/net/" + interface_ + "/carrier");
+  return carrier && carrier->starts_with('0');
 }
 
 bool SocketCanLink::repair() {

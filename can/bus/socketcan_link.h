@@ -52,6 +52,14 @@ class SocketCanLink {
   /// Whether CAN FD is wanted, and the interface came back as a classic one.
   bool lacks_fd() const { return lacks_fd_ && !lost_; }
 
+  /// Whether a frame of this socket waits in the kernel's queue for room in the controller. A frame
+  /// that the controller has does not count.
+  bool has_queued_frames() const;
+
+  /// Whether the controller is bus-off. Also true of one end of a vxcan pair while the other end is
+  /// down.
+  bool is_bus_off() const;
+
   /// Looks for a lost interface if the next attempt is due (BackOff). Returns true when the
   /// interface was found and bound. Notices that an interface that was down is up again.
   bool repair();

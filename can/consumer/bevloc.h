@@ -33,7 +33,7 @@ enum bevloc_answer {
                             LOC_Status for three of its cycles, or your clock was set back: `now_us`
                             is more than a cycle before the arrival of the pose or LOC_Status */
   BEVLOC_NOT_VALID,      /* the state is neither TRACKING nor DEGRADED */
-  BEVLOC_FOREIGN_SENDER, /* somebody else sends the vehicle's messages (Why_ForeignSender) */
+  BEVLOC_FOREIGN_SENDER, /* a foreign sender is on the bus (Why_ForeignSender) */
   BEVLOC_NOT_AVAILABLE,  /* a value, the integrity risk, or the protection level of an axis with
                             an alert limit is not available */
   BEVLOC_BEYOND_LIMIT    /* a protection level is beyond its alert limit, or the risk is too high */

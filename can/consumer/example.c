@@ -78,13 +78,14 @@ static int read_log(struct printer* printer, const char* path) {
   bool readable = false;
   int number = 0;
   struct candump_line frame = {0};
+  struct candump_interface first = {0};
   enum candump_kind kind = CANDUMP_OTHER;
   FILE* log = fopen(path, "r");
   if (log == NULL) return refuse_file(path);
   while (kind != CANDUMP_BAD && fgets(text, sizeof text, log) != NULL) {
     ++number;
     kind = candump_parse(text, &frame);
-    if (kind != CANDUMP_DATA) continue;
+    if (kind != CANDUMP_DATA || !candump_is_of_first(&first, &frame, path, number)) continue;
     take(printer, frame.id, frame.data, frame.length, frame.time_us, frame.time_us);
   }
   readable = ferror(log) == 0; /* a folder opens, but cannot be read */

@@ -66,12 +66,15 @@ int read_log(const char* path) {
   log.clear();
   Printer printer;
   candump_line frame{};
+  candump_interface first{};
   int number = 0;
   for (std::string line; std::getline(log, line);) {
     ++number;
     line += '\n';
     const candump_kind kind = candump_parse(line.c_str(), &frame);
-    if (kind == CANDUMP_DATA) printer.take(frame);
+    if (kind == CANDUMP_DATA && candump_is_of_first(&first, &frame, path, number)) {
+      printer.take(frame);
+    }
     if (kind != CANDUMP_BAD) continue;
     std::fflush(stdout);
     std::fprintf(stderr, "%s:%d: found something else, wanted %s\n", path, number, CANDUMP_WANTED);

@@ -18,7 +18,7 @@ namespace bevloc::can {
 
 /// One line of VAL_: the name of a raw value.
 struct DbcValueName {
-  int64_t raw = 0;
+  int64_t raw = 0;  ///< with the sign of the signal, as raw_from() returns it
   std::string name;
 };
 

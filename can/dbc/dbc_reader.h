@@ -60,6 +60,7 @@ class DbcReader {
   void skip_statement(const std::string& keyword);
   void skip_unknown(const DbcToken& first);
   void skip_list(const std::string& keyword);
+  void complete_value_names(DbcMessage& message) const;
   void complete(DbcMessage& message) const;
 
   std::string take_word(std::string_view wanted);

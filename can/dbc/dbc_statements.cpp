@@ -1,10 +1,25 @@
 // The statements of DBC files about messages and signals that were read before.
 #include <algorithm>
 #include <charconv>
+#include <optional>
 
 #include "can/dbc/dbc_reader.h"
 
 namespace bevloc::can {
+namespace {
+
+/// Returns the raw value that the bits of `raw` mean in this layout, or nothing if they do not fit.
+/// Some tools write the values of a signed signal without a sign: 32768 for -32768 in 16 bits.
+std::optional<int64_t> raw_in(const SignalLayout& layout, int64_t raw) {
+  const int unused = 64 - layout.length_bits;
+  const auto bits = static_cast<uint64_t>(raw) << unused;
+  const int64_t as_signed = static_cast<int64_t>(bits) >> unused;
+  const auto as_unsigned = static_cast<int64_t>(bits >> unused);
+  if (raw != as_signed && raw != as_unsigned) return std::nullopt;
+  return layout.type == RawType::kSigned ? as_signed : as_unsigned;
+}
+
+}  // namespace
 
 void DbcReader::read_value_names() {
   if (!next_is_number()) return skip_statement("VAL_ (environment variable)");
@@ -122,9 +137,29 @@ void DbcReader::read_attribute() {
   take_sign(';');
 }
 
+/// Gives the named values of a good message the signs of their signals. A name of a value that the
+/// signal cannot have does no harm, except SNA: then nothing would show that the signal is not
+/// available.
+void DbcReader::complete_value_names(DbcMessage& message) const {
+  for (DbcSignal& signal : message.signals) {
+    if (!is_integer(signal.layout)) continue;
+    for (DbcValueName& value : signal.value_names) {
+      const auto raw = raw_in(signal.layout, value.raw);
+      if (!raw && means_not_available(value.name)) {
+        leave_out(message, signal.line,
+                  fmt::format("value {} of signal {} with the name {}", value.raw, signal.name,
+                              value.name),
+                  fmt::format("a value that fits into {} bits", signal.layout.length_bits));
+      }
+      value.raw = raw.value_or(value.raw);
+    }
+  }
+}
+
 /// Checks what later statements say, and adds the defaults of the attributes.
 void DbcReader::complete(DbcMessage& message) const {
   check_multiplexors(message);
+  if (message.left_out.empty()) complete_value_names(message);
   if (!message.left_out.empty()) message.signals.clear();
   for (const auto& [name, value] : defaults_) {
     if (message_attributes_.contains(name)) message.attributes.emplace(name, value);

@@ -27,9 +27,12 @@ struct E2eStateParameters {
   int max_error_invalid = 1;
 };
 
-/// E2E_SMCheck of AUTOSAR, with two deviations to the safe side. A repeated frame counts as an
-/// error, because two senders of one message repeat each other's counters. INIT does not become
-/// INVALID, because no frame is used in either state. One thread.
+/// E2E_SMCheck of AUTOSAR, with three deviations. Two are to the safe side: A repeated frame counts
+/// as an error, because two senders of one message repeat each other's counters. INIT does not
+/// become INVALID, because no frame is used in either state. The third one is not: if one good
+/// frame suffices for VALID, the first good frame after the start is used at once, while AUTOSAR
+/// leaves INIT only with the second frame. The first frame may be an old one that waited in the
+/// sender's controller. No pose is valid so early. One thread.
 class E2eStateMachine {
  public:
   explicit E2eStateMachine(const E2eStateParameters& parameters) : parameters_(parameters) {}

@@ -89,8 +89,7 @@ BusListener::BusListener(std::vector<Dbc> files, const BaseIds& base) : files_(s
       for (const DbcSignal& signal : message.signals) {
         known.available.push_back(signal.available_values());
       }
-      const Message* own = own_message(message.name, message.id, base);
-      if (own != nullptr) known.checker.emplace(own->protection(), own->length);
+      known.own = own_message(message.name, message.id, base);
       known_.emplace(message.id, known);
     }
   }
@@ -113,7 +112,21 @@ void BusListener::add_signals(const Known& known, std::span<const uint8_t> bytes
   }
 }
 
-const DecodedFrame* BusListener::decode(const Frame& frame) {
+E2eResult BusListener::check(const Frame& frame, std::string_view interface, Known& known) {
+  auto checker = known.checkers.find(interface);
+  if (checker == known.checkers.end()) {
+    const E2eChecker unused(known.own->protection(), known.own->length);
+    checker = known.checkers.emplace(interface, unused).first;
+  }
+  Total& total = totals_[known.message->name];
+  const uint64_t lost_before = checker->second.counters().lost;
+  const E2eResult result = checker->second.check(frame);
+  if (!is_usable(result)) ++total.unusable;
+  total.lost += checker->second.counters().lost - lost_before;
+  return result;
+}
+
+const DecodedFrame* BusListener::decode(const Frame& frame, std::string_view interface) {
   const auto known = known_.find(frame.id);
   if (known == known_.end() || !known->second.message->left_out.empty()) {
     ++unknown_;
@@ -121,13 +134,8 @@ const DecodedFrame* BusListener::decode(const Frame& frame) {
   }
   const DbcMessage& message = *known->second.message;
   decoded_ = {.message = &message, .is_short = frame.length < message.length};
-  Total& total = totals_[message.name];
-  ++total.frames;
-  if (auto& checker = known->second.checker) {
-    decoded_.e2e = checker->check(frame);
-    if (!is_usable(*decoded_.e2e)) ++total.unusable;
-    total.lost = checker->counters().lost;
-  }
+  ++totals_[message.name].frames;
+  if (known->second.own != nullptr) decoded_.e2e = check(frame, interface, known->second);
   add_signals(known->second, frame.payload());
   return &decoded_;
 }

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -49,10 +50,11 @@ class BusListener {
   BusListener(std::vector<Dbc> files, const BaseIds& base);
 
   /// Decodes a frame. Returns null if no file describes its message. The result is valid until the
-  /// next call.
-  const DecodedFrame* decode(const Frame& frame);
+  /// next call. Each interface of a log is a bus of its own: its frames are checked apart from
+  /// those of the others.
+  const DecodedFrame* decode(const Frame& frame, std::string_view interface = "");
 
-  /// The totals by name of the message.
+  /// The totals of all interfaces by name of the message.
   const std::map<std::string, Total>& totals() const { return totals_; }
   uint64_t unknown() const { return unknown_; }
   /// Whether some file has a message of this name and does not leave it out.
@@ -62,9 +64,11 @@ class BusListener {
   struct Known {
     const DbcMessage* message = nullptr;       ///< a message that may be left out
     std::vector<AvailableValues> available{};  ///< those of each of its signals
-    std::optional<E2eChecker> checker{};
+    const Message* own = nullptr;              ///< null if it is not one of bevloc's messages
+    std::map<std::string, E2eChecker, std::less<>> checkers{};  ///< by interface
   };
 
+  E2eResult check(const Frame& frame, std::string_view interface, Known& known);
   void add_signals(const Known& known, std::span<const uint8_t> bytes);
 
   std::vector<Dbc> files_;

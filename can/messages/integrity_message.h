@@ -87,6 +87,6 @@ inline constexpr Message kMessage{
     .signals = kSignals,
     .comment =
         "Protection levels of this epoch's pose along the vehicle's axes, and the reasons that "
-        "have no room in LOC_Status. The last of the messages that every epoch has."};
+        "have no room in LOC_Status. It follows the pose messages of every epoch."};
 
 }  // namespace bevloc::can::loc_integrity

@@ -88,10 +88,9 @@ inline constexpr std::array<Signal, 16> kWhy{{
     reason_flag("Why_Overload", 11, "Frames are skipped because computation is too slow."),
     reason_flag("Why_MapFault", 12,
                 "GNSS and map lie apart by a constant offset. The pose is not valid."),
-    reason_flag(
-        "Why_CalibrationFault", 13,
-        "A camera is not where the calibration has it, and is not used; or the cameras' time "
-        "stamps contradict the yaw rate, and the pose is not valid."),
+    reason_flag("Why_CalibrationFault", 13,
+                "A camera is not where the calibration says, and is not used; or the cameras' time "
+                "stamps contradict the yaw rate, and the pose is not valid."),
     reason_flag("Why_NetworkFault", 14, "The network computed another answer than it should."),
     reason_flag("Why_InternalFault", 15, "Any other fault inside the localizer."),
 }};

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <string>
+#include <system_error>
 
 #include <sys/stat.h>
 
@@ -51,7 +52,14 @@ Result<SecocKey> read_secoc_key(const std::filesystem::path& file) {
 }
 
 Result<uint32_t> read_start_number(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return 0;
+  std::error_code error;
+  const bool exists = std::filesystem::exists(file, error);
+  // Only if there surely is no file, counting begins anew.
+  if (error) {
+    return fail("{}: cannot be read ({}), wanted the number of starts or no file", file.string(),
+                error.message());
+  }
+  if (!exists) return 0;
   auto content = read_file(file);
   if (!content) return tl::unexpected(content.error());
   const std::string text = without_end_of_line(std::move(*content));

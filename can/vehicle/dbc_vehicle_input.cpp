@@ -11,6 +11,9 @@ namespace bevloc::can {
 namespace {
 
 constexpr int kMostCycles = 4;
+/// A multiplexed signal may come seldom. A value is not used longer than this, unless the message
+/// itself comes so seldom.
+constexpr Duration kMostAgeOfSeldom = std::chrono::seconds(2);
 /// If n frames come once per interval, the longest gap between two of them is at least the interval
 /// divided by n. A sample begins after such a gap. Frames do not come exactly on time, so this
 /// share of the gap suffices.
@@ -98,8 +101,9 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
 /// Whether there is a new position, and no heading must be waited for.
 bool DbcVehicleInput::is_fix_complete(Time now) {
   if (position_signals_.empty() || !all_new(position_signals_)) return false;
-  const bool heading_stopped =
-      std::ranges::any_of(heading_signals_, [&](size_t signal) { return is_old(signal, now); });
+  const bool heading_stopped = std::ranges::any_of(heading_signals_, [&](size_t signal) {
+    return is_older(signal, kMostCycles * cycle_of(signal), now);
+  });
   if (heading_stopped) return !drop_stale(position_signals_, gnss_frames_, now);
   return all_new(heading_signals_) && !drop_stale(gnss_signals_, gnss_frames_, now);
 }
@@ -111,7 +115,8 @@ bool DbcVehicleInput::waits_for_old(const std::vector<size_t>& signals, size_t m
     return binding_.signals[signal].message == message;
   };
   return std::ranges::any_of(signals, is_of_message) &&
-         std::ranges::any_of(signals, [&](size_t signal) { return is_old(signal, now); });
+         std::ranges::any_of(
+             signals, [&](size_t signal) { return is_older(signal, most_age(signal), now); });
 }
 
 bool DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
@@ -128,7 +133,8 @@ bool DbcVehicleInput::store(size_t message, const ReceivedFrame& received) {
     replaced_unused = replaced_unused || slot.is_new;
     if (slot.received != Time::min()) {
       const Duration interval = received.received - slot.received;
-      slot.interval = std::min(interval, slot.latest_interval);
+      const bool is_first = slot.latest_interval == Duration::zero();
+      slot.interval = is_first ? interval : std::min(interval, slot.latest_interval);
       slot.latest_interval = interval;
     }
     slot.raw = raw_from(signal.layout, bytes);
@@ -155,8 +161,7 @@ bool DbcVehicleInput::drop_stale(const std::vector<size_t>& signals, int frames,
   for (const size_t signal : signals) {
     const Duration interval = interval_of(signal);
     const Duration fresh = from_seconds(fresh_share * to_seconds(interval));
-    const Duration most_age = std::min(fresh, kMostCycles * cycle_of(signal));
-    if (now - slots_[signal].received <= most_age) continue;
+    if (!is_older(signal, std::min(fresh, most_age(signal)), now)) continue;
     slots_[signal].is_new = false;
     dropped = true;
     // A message that comes more often than the others brings the next value for the same sample.
@@ -186,9 +191,17 @@ Duration DbcVehicleInput::interval_of(size_t signal) const {
   return std::max(cycle_of(signal), slots_[signal].interval);
 }
 
-bool DbcVehicleInput::is_old(size_t signal, Time now) const {
+/// The largest age of a value that is used: four cycles of its message. If the signal is
+/// multiplexed, it is four intervals of the signal, but at most kMostAgeOfSeldom.
+Duration DbcVehicleInput::most_age(size_t signal) const {
+  const Duration by_message = kMostCycles * cycle_of(signal);
+  if (!binding_.signals[signal].multiplexed) return by_message;
+  return std::max(by_message, std::min(kMostCycles * interval_of(signal), kMostAgeOfSeldom));
+}
+
+bool DbcVehicleInput::is_older(size_t signal, Duration limit, Time now) const {
   const Time received = slots_[signal].received;
-  return received == Time::min() || now - received > kMostCycles * cycle_of(signal);
+  return received == Time::min() || now - received > limit;
 }
 
 /// Returns nothing if the signal of the condition is missing, too old or not available. An empty
@@ -196,7 +209,7 @@ bool DbcVehicleInput::is_old(size_t signal, Time now) const {
 std::optional<bool> DbcVehicleInput::holds(const std::optional<BoundCondition>& condition,
                                            Time now) const {
   if (!condition) return true;
-  if (is_old(condition->signal, now)) return std::nullopt;
+  if (is_older(condition->signal, most_age(condition->signal), now)) return std::nullopt;
   const Slot& slot = slots_[condition->signal];
   if (std::ranges::find(condition->values, slot.raw) != condition->values.end()) return true;
   return slot.available ? std::optional(false) : std::nullopt;

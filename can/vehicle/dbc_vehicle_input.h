@@ -18,7 +18,8 @@ namespace bevloc::can {
 /// earliest value of the position. The next value will soon replace an old one. So an old value is
 /// not combined with the new value of another message: it is dropped, and the sample waits for the
 /// next one. Otherwise, after one lost frame, all later samples would combine values of two cycles.
-/// A condition (valid, backward) may be at most four cycles of its message old. A GNSS sample does
+/// A condition (valid, backward) may be at most four cycles of its message old. If its signal is
+/// multiplexed, it may be as old as four periods of the signal, but at most 2 s. A GNSS sample does
 /// not wait for a heading that is more than four cycles old, and then has none. One thread. Does
 /// not allocate after construction.
 class DbcVehicleInput final : public VehicleDecoder {
@@ -40,6 +41,7 @@ class DbcVehicleInput final : public VehicleDecoder {
     Time received = Time::min();
     Duration latest_interval{};  ///< between the latest two values
     /// The shorter one of the latest two intervals, because one lost frame makes one of them long.
+    /// After two values, it is the only one.
     Duration interval{};
     bool available = false;  ///< one of BoundSignal::available
     bool is_new = false;     ///< no sample has used the value yet
@@ -53,8 +55,9 @@ class DbcVehicleInput final : public VehicleDecoder {
   bool waits_for_old(const std::vector<size_t>& signals, size_t message, Time now) const;
   Duration cycle_of(size_t signal) const;
   Duration interval_of(size_t signal) const;
-  /// Whether the latest value is more than four cycles old, or none has come yet.
-  bool is_old(size_t signal, Time now) const;
+  Duration most_age(size_t signal) const;
+  /// Whether the latest value is older than `limit`, or none has come yet.
+  bool is_older(size_t signal, Duration limit, Time now) const;
   /// Marks the values as used. Returns whether all are available.
   bool take(const std::vector<size_t>& signals);
   std::optional<bool> holds(const std::optional<BoundCondition>& condition, Time now) const;

@@ -101,6 +101,13 @@ TEST(Candump, RecognisesTheKindOfAFrame) {
   EXPECT_EQ(parsed("(1.000000) can0 123#01 R").frame.length, 1);
 }
 
+TEST(Candump, ReadsAnInterfaceThatCandumpHasAligned) {
+  const CandumpEntry entry = parsed("(1436509052.249713)   can0 504#D700000080000080");
+  EXPECT_EQ(entry.interface, "can0");
+  EXPECT_EQ(entry.kind, CandumpKind::kData);
+  EXPECT_EQ(entry.frame.id, 0x504u);
+}
+
 TEST(Candump, RefusesBadLines) {
   for (const std::string_view line : {
            "nonsense",
@@ -111,6 +118,7 @@ TEST(Candump, RefusesBadLines) {
            "(-1.000000) can0 123#00",
            "(99999999999999.000000) can0 123#00",
            "(1.000000)  123#00",
+           "(1.000000)  ",
            "(1.000000) can0 12#00",
            "(1.000000) can0 1234#00",
            "(1.000000) can0 800#00",
@@ -148,6 +156,16 @@ TEST(Candump, ReadsALogAndNamesTheBadLine) {
   const auto refused = read_candump(bad, "drive.log");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("drive.log:2: found 'what is this'"));
+}
+
+TEST(Candump, SkipsLinesAboutDroppedFrames) {
+  std::istringstream log(
+      "(1.000000) can0 001#01\n"
+      "DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total drops 3)\n"
+      "(2.500000) can0 002#02\n");
+  const auto entries = read_candump(log, "drive.log");
+  ASSERT_TRUE(entries) << entries.error().message;
+  EXPECT_EQ(entries->size(), 2u);
 }
 
 TEST(Candump, AMissingFileIsAnError) {

@@ -54,11 +54,25 @@ TEST(ControllerMonitor, NamesEveryFault) {
 TEST(ControllerMonitor, TrafficClearsFaultsAndBusOffButNotErrorPassive) {
   ControllerMonitor monitor;
   monitor.take(report(CAN_ERR_CRTL | CAN_ERR_ACK, CAN_ERR_CRTL_TX_PASSIVE));
-  monitor.note_traffic();
+  EXPECT_FALSE(monitor.note_traffic());
   EXPECT_EQ(to_string(monitor.condition()), "error-passive");
   monitor.take(report(CAN_ERR_BUSOFF));
-  monitor.note_traffic();
+  EXPECT_TRUE(monitor.note_traffic()) << "a restart without a report";
   EXPECT_EQ(monitor.condition(), BusCondition{});
+}
+
+TEST(ControllerMonitor, BusOffAtTheStartEndsWithTrafficOrARestart) {
+  for (const bool by_traffic : {true, false}) {
+    ControllerMonitor monitor;
+    monitor.note_bus_off();
+    EXPECT_EQ(to_string(monitor.condition()), "bus-off");
+    if (by_traffic) {
+      monitor.note_traffic();
+    } else {
+      monitor.take(report(CAN_ERR_RESTARTED));
+    }
+    EXPECT_EQ(monitor.condition(), BusCondition{});
+  }
 }
 
 TEST(ControllerMonitor, AResetClearsTheCondition) {

@@ -122,6 +122,38 @@ TEST(ReceiveClock, FollowsADriftingController) {
   }
 }
 
+/// A frame every 20 ms for 200 s. CLOCK_MONOTONIC and CLOCK_REALTIME run faster than the
+/// controller's clock by `rate`. Returns how far a time is behind the kernel's stamp at most.
+Duration largest_lag(double rate) {
+  ReceiveClock clock;
+  Duration largest{};
+  for (int i = 0; i < 10'000; ++i) {
+    const Duration sent = milliseconds(20 * i);
+    const Duration passed = from_seconds(to_seconds(sent) * (1.0 + rate));
+    const auto stamped = clock.to_steady(
+        {.software = kRealtime + passed, .hardware = seconds(7) + sent}, now_after(passed));
+    EXPECT_EQ(stamped.source, StampSource::kHardware);
+    largest = std::max(largest, kSteady + passed - stamped.time);
+  }
+  return largest;
+}
+
+TEST(ReceiveClock, FollowsAClockThatATimeServiceSteers) {
+  for (const double rate : {500e-6, -500e-6}) {
+    EXPECT_LE(largest_lag(rate), Duration(milliseconds(1))) << rate;
+  }
+  EXPECT_LE(largest_lag(0.01), Duration(milliseconds(3)));
+}
+
+TEST(ReceiveClock, FollowsAControllerWhoseClockStoodStill) {
+  ReceiveClock clock;
+  clock.to_steady({.software = kRealtime, .hardware = seconds(500)}, now_after(Duration::zero()));
+  const auto stamped = clock.to_steady(
+      {.software = kRealtime + milliseconds(110), .hardware = seconds(500) + milliseconds(10)},
+      now_after(milliseconds(110)));
+  EXPECT_EQ(stamped.time, kSteady + milliseconds(110));
+}
+
 TEST(ReceiveClock, FollowsAControllerThatRestarted) {
   ReceiveClock clock;
   clock.to_steady({.software = kRealtime, .hardware = seconds(500)}, now_after(Duration::zero()));

@@ -17,10 +17,10 @@ using std::chrono::milliseconds;
 /// A bus on one end of a socket pair. The test writes any bytes into the other end.
 class SocketCanWire : public testing::Test {
  protected:
-  SocketCanWire() {
+  explicit SocketCanWire(const SocketCanOptions& options = {}) {
     int descriptors[2];
     EXPECT_EQ(socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, descriptors), 0);
-    bus_ = SocketCanBus::from_descriptor(descriptors[0]);
+    bus_ = SocketCanBus::from_descriptor(descriptors[0], options);
     far_end_ = descriptors[1];
   }
   ~SocketCanWire() override { close(far_end_); }
@@ -28,6 +28,14 @@ class SocketCanWire : public testing::Test {
   template <typename T>
   void put(const T& raw) {
     ASSERT_EQ(::send(far_end_, &raw, sizeof(raw), 0), static_cast<ssize_t>(sizeof(raw)));
+  }
+
+  /// Reads all frames at the far end.
+  std::vector<can_frame> read_far_end() {
+    std::vector<can_frame> frames;
+    can_frame raw{};
+    while (::recv(far_end_, &raw, sizeof(raw), MSG_DONTWAIT) > 0) frames.push_back(raw);
+    return frames;
   }
 
   std::unique_ptr<SocketCanBus> bus_;
@@ -103,6 +111,47 @@ TEST_F(SocketCanWire, CountsFramesThatTheControllerLost) {
   EXPECT_EQ(bus_->condition().state, BusState::kActive);
 }
 
+/// A wire that confirms no frame. The frames that the far end has not read wait, as in the queue of
+/// the kernel.
+class SocketCanGate : public SocketCanWire {
+ protected:
+  SocketCanGate() : SocketCanWire({.confirmed_ids = {0x500}}) {}
+
+  SendResult send() { return bus_->send({.id = 0x500}, Time{}); }
+  void report(canid_t classes) {
+    put(data_frame(CAN_ERR_FLAG | classes, CAN_ERR_DLC));
+    EXPECT_FALSE(bus_->receive());
+  }
+};
+
+TEST_F(SocketCanGate, ARestartOfTheControllerAddsNoFrameToTheQueue) {
+  for (int restart = 0; restart < 3; ++restart) {
+    send();
+    report(CAN_ERR_BUSOFF);
+    EXPECT_EQ(send(), SendResult::kWaiting);
+    report(CAN_ERR_RESTARTED);
+    EXPECT_EQ(send(), SendResult::kWaiting) << "the first frame has not left the queue";
+  }
+  EXPECT_EQ(read_far_end().size(), 1u);
+  EXPECT_EQ(send(), SendResult::kWaiting) << "the controller may still send it";
+  put(data_frame(0x321, 8));
+  EXPECT_TRUE(bus_->receive());
+  EXPECT_EQ(send(), SendResult::kSent) << "the bus is alive, and the queue is empty";
+}
+
+TEST_F(SocketCanGate, ARestartDiscardsTheFramesInTheController) {
+  for (const canid_t restarted : {CAN_ERR_RESTARTED, CAN_ERR_TX_TIMEOUT}) {
+    send();
+    read_far_end();
+    report(CAN_ERR_BUSOFF);
+    EXPECT_EQ(send(), SendResult::kWaiting);
+    report(restarted);
+    EXPECT_EQ(send(), SendResult::kSent);
+    read_far_end();
+    report(CAN_ERR_RESTARTED);
+  }
+}
+
 TEST(BusCondition, SaysThatTheInterfaceIsAClassicOne) {
   BusCondition condition{.state = BusState::kDown};
   condition.add(BusFault::kNoFd);
@@ -125,11 +174,8 @@ class FullSocketCanWire : public SocketCanWire {
 
   /// Empties the wire and returns its frames, except those that the constructor filled in.
   std::vector<can_frame> drain() {
-    std::vector<can_frame> frames;
-    can_frame raw{};
-    while (::recv(far_end_, &raw, sizeof(raw), MSG_DONTWAIT) > 0) {
-      if (raw.can_id != 0x7FF) frames.push_back(raw);
-    }
+    std::vector<can_frame> frames = read_far_end();
+    std::erase_if(frames, [](const can_frame& raw) { return raw.can_id == 0x7FF; });
     return frames;
   }
 };

@@ -35,11 +35,12 @@ class SocketCanKernel : public testing::Test {
 };
 
 /// Sends an error report to the interface, as a driver does.
-void report_error(uint32_t classes, uint8_t controller_status) {
+void report_error(uint32_t classes, uint8_t controller_status,
+                  const std::string& interface = kernel_interface()) {
   const int descriptor = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);
   sockaddr_can address{};
   address.can_family = AF_CAN;
-  address.can_ifindex = static_cast<int>(if_nametoindex(kernel_interface().c_str()));
+  address.can_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
   ASSERT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
   can_frame raw{};
   raw.can_id = CAN_ERR_FLAG | classes;
@@ -125,6 +126,52 @@ TEST(SocketCanInterface, AListenerNoticesThatItIsUpAgain) {
   ASSERT_EQ(std::system("ip link set bevloc0 up"), 0);
   (*listener)->wait(milliseconds(0));
   EXPECT_EQ((*listener)->condition().state, BusState::kActive);
+  EXPECT_EQ(std::system("ip link del bevloc0"), 0);
+}
+
+TEST(SocketCanInterface, StartsAnewAlsoIfItWasDownBetweenTwoFrames) {
+  if (std::system((kAddInterface + std::string(" 2> /dev/null")).c_str()) != 0) {
+    GTEST_SKIP() << "SocketCan: needs ip, vcan and CAP_NET_ADMIN";
+  }
+  const auto sender = SocketCanBus::open("bevloc0", {.confirmed_ids = {0x510}});
+  const auto listener = SocketCanBus::open("bevloc0");
+  ASSERT_TRUE(sender && listener);
+  report_error(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE, "bevloc0");
+  for (const auto& bus : {sender->get(), listener->get()}) {
+    ASSERT_TRUE(bus->wait(seconds(10)));
+    EXPECT_FALSE(bus->receive());
+    EXPECT_EQ(bus->condition().state, BusState::kPassive);
+  }
+  ASSERT_EQ((*sender)->send({.id = 0x510}, Time{}), SendResult::kSent);
+  ASSERT_EQ(std::system("ip link set bevloc0 down && ip link set bevloc0 up"), 0);
+  for (const auto& bus : {sender->get(), listener->get()}) {
+    EXPECT_FALSE(bus->receive()) << "the kernel reports the failure before it delivers frames";
+    bus->wait(milliseconds(0));
+    EXPECT_EQ(bus->condition(), BusCondition{});
+  }
+  EXPECT_EQ((*sender)->send({.id = 0x510}, Time{}), SendResult::kSent) << "without an echo";
+  EXPECT_EQ(std::system("ip link del bevloc0"), 0);
+}
+
+/// One end of a vxcan pair has no carrier while the other end is down, like an interface whose
+/// controller is bus-off.
+TEST(SocketCanInterface, ThatIsBusOffAtTheStartIsNamed) {
+  const std::string add =
+      "(ip link add bevloc0 type vxcan peer name bevloc1 && ip link set bevloc0 up) 2> /dev/null";
+  if (std::system(add.c_str()) != 0) {
+    GTEST_SKIP() << "SocketCan: needs ip, vxcan and CAP_NET_ADMIN";
+  }
+  const auto bus = SocketCanBus::open("bevloc0");
+  ASSERT_TRUE(bus);
+  EXPECT_EQ((*bus)->condition().state, BusState::kOff);
+  ASSERT_EQ(std::system("ip link set bevloc1 up"), 0);
+  const auto other = SocketCanBus::open("bevloc1");
+  ASSERT_TRUE(other);
+  EXPECT_EQ((*other)->condition(), BusCondition{});
+  ASSERT_EQ((*other)->send({.id = 0x510}, Time{}), SendResult::kSent);
+  ASSERT_TRUE((*bus)->wait(seconds(10)));
+  EXPECT_TRUE((*bus)->receive());
+  EXPECT_EQ((*bus)->condition(), BusCondition{});
   EXPECT_EQ(std::system("ip link del bevloc0"), 0);
 }
 

@@ -113,12 +113,32 @@ class ConsumersTest(unittest.TestCase):
         lines += [f"{lines[0][:18]}123) vcan0 123#00 R"]
         self.assertIn("frames: 840 ok, 52 lost", self.answers_to(lines))
 
+    def test_aligned_names_and_counts_of_dropped_frames_make_no_difference(self) -> None:
+        aligned = [line.replace(") can0 ", ")   can0 ") for line in self.golden_lines()]
+        dropped = "DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total drops 3)"
+        self.assertEqual(self.answers_to([aligned[0], dropped, *aligned[1:]]), self.expected)
+
+    def test_only_the_first_interface_is_read(self) -> None:
+        both = []
+        for line in self.golden_lines():
+            both += [line, line.replace(" can0 ", " can1 "), line.replace(" can0 ", " can2 ")]
+        self.assertEqual(self.answers_to(both), self.expected)
+        with tempfile.TemporaryDirectory() as folder:
+            log = Path(folder) / "can.log"
+            log.write_text("\n".join(both))
+            for program in programs():
+                done = subprocess.run([*program, str(log)], check=True, capture_output=True,
+                                      text=True, cwd=CONSUMER)
+                self.assertEqual(done.stderr, f"{log}:2: found interface can1 after can0, wanted "
+                                              "one; all but can0 are skipped\n")
+
     def test_what_is_no_log_is_refused(self) -> None:
         time = "(0000000005.000000) can0 "
         with tempfile.TemporaryDirectory() as folder:
             log = Path(folder) / "can.log"
             for bad in ("garbage", time + "500#ABC", time + "500#00" + 8 * "00", time + "800#00",
-                        time + "500#00x", time + "50#00", "(5.0) can0 500#00", "500#00"):
+                        time + "500#00x", time + "50#00", "(5.0) can0 500#00", "500#00",
+                        "(5.000000)  500#00"):
                 log.write_text(f"\n{time}123#00\n{bad}\n")
                 for program in programs():
                     self.assert_refuses(program, str(log), f"{log}:3: found something else, wanted")

@@ -171,6 +171,26 @@ TEST(DbcReaderTest, FindsAllValuesOfAName) {
   EXPECT_TRUE(dbc->messages[0].signals[0].values_named("X").empty());
 }
 
+TEST(DbcReaderTest, GivesNamedValuesTheSignOfTheirSignal) {
+  const auto values = [](const std::string& layout, const std::string& raw) {
+    const auto dbc = parse_dbc(
+        "BO_ 1 A: 8 X\n SG_ S : " + layout + " (1,0) [0|0] \"\" Y\nVAL_ 1 S " + raw + " \"N\" ;\n",
+        "x.dbc");
+    EXPECT_TRUE(dbc) << dbc.error().message;
+    EXPECT_EQ(dbc->messages[0].left_out, "");
+    return dbc->messages[0].signals[0].values_named("N").at(0);
+  };
+  EXPECT_EQ(values("0|16@1-", "32768"), -32768);
+  EXPECT_EQ(values("0|16@1-", "-32768"), -32768);
+  EXPECT_EQ(values("0|16@1-", "65535"), -1);
+  EXPECT_EQ(values("0|16@1-", "32767"), 32767);
+  EXPECT_EQ(values("0|16@1+", "32768"), 32768);
+  EXPECT_EQ(values("0|8@1+", "-1"), 255);
+  EXPECT_EQ(values("0|1@1-", "1"), -1);
+  EXPECT_EQ(values("0|64@1-", "9223372036854775808"), INT64_MIN);
+  EXPECT_EQ(values("0|8@1+", "256"), 256) << "no harm, because the signal never has it";
+}
+
 TEST(DbcReaderTest, LeavesOutMessagesThatCannotBeRight) {
   const auto left_out = [](const std::string& signals, const std::string& later = "") {
     const auto dbc = parse_dbc(
@@ -195,6 +215,10 @@ TEST(DbcReaderTest, LeavesOutMessagesThatCannotBeRight) {
             "multiplexed signals");
   EXPECT_EQ(left_out(" SG_ S : 0|8@1+ (1,0) [0|0] \"\" Y", "SIG_VALTYPE_ 1 S : 1;\n"),
             "x.dbc:5: found signal S with 8 bits, wanted 32 bits for this type");
+  EXPECT_EQ(
+      left_out(" SG_ S : 0|8@1- (1,0) [0|0] \"\" Y", "VAL_ 1 S 256 \"SNA\" ;\n"),
+      "x.dbc:2: found value 256 of signal S with the name SNA, wanted a value that fits into 8 "
+      "bits");
 }
 
 TEST(DbcReaderTest, ReadsTwoMultiplexorsWithTheirValues) {

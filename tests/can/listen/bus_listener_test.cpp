@@ -55,6 +55,17 @@ TEST(BusListenerTest, ShowsNoValueThatBevlocdWouldNotUse) {
   EXPECT_EQ(shown(0, 102), "0.000000 A V=0m L=102(not_available)");
 }
 
+TEST(BusListenerTest, KnowsTheSnaOfASignedSignalThatIsWrittenWithoutASign) {
+  BusListener listener = listener_of(
+      "BO_ 256 A: 8 X\n SG_ Yaw : 0|16@1- (0.01,0) [0|0] \"deg/s\" Y\n"
+      "VAL_ 256 Yaw 32768 \"SNA\" ;\n");
+  const DecodedFrame* frame = listener.decode({.id = 256, .length = 2, .data = {0x00, 0x80}});
+  EXPECT_EQ(text_of(*frame, 0.0), "0.000000 A short Yaw=SNA");
+  EXPECT_TRUE(nlohmann::json::parse(json_of(*frame, 0.0))["signals"]["Yaw"].is_null());
+  frame = listener.decode({.id = 256, .length = 2, .data = {0x01, 0x80}});
+  EXPECT_EQ(text_of(*frame, 0.0), "0.000000 A short Yaw=-327.67deg/s");
+}
+
 TEST(BusListenerTest, DecodesSignalsAtSeveralValuesOfTheMultiplexor) {
   BusListener listener = listener_of(kMultiplexed + "SG_MUL_VAL_ 16 One Page 1-1, 4-5;\n");
   const DecodedFrame* frame = listener.decode({.id = 16, .length = 8, .data = {5, 5}});
@@ -108,6 +119,23 @@ TEST(BusListenerTest, ChecksTheProtectionOfBevlocsMessages) {
   EXPECT_EQ(json["message"], "VEH_WheelSpeed");
   EXPECT_EQ(json["e2e"], "wrong_crc");
   EXPECT_EQ(listener.totals().at("VEH_WheelSpeed").unusable, 2U);
+}
+
+TEST(BusListenerTest, ChecksEachInterfaceOnItsOwn) {
+  BusListener listener({}, {});
+  VehicleEncoder encoder(BaseIds{}, {49.0, 8.4}, 1.6);
+  Frame frame = encoder.odometry(OdometrySample{.speed_mps = 10.0})[0];
+  EXPECT_EQ(listener.decode(frame, "can0")->e2e, E2eResult::kOk);
+  EXPECT_EQ(listener.decode(frame, "can1")->e2e, E2eResult::kOk);
+  encoder.odometry(OdometrySample{.speed_mps = 10.0});  // lost on both
+  frame = encoder.odometry(OdometrySample{.speed_mps = 10.0})[0];
+  EXPECT_EQ(listener.decode(frame, "can0")->e2e, E2eResult::kSomeLost);
+  EXPECT_EQ(listener.decode(frame, "can1")->e2e, E2eResult::kSomeLost);
+  EXPECT_EQ(listener.decode(frame, "can1")->e2e, E2eResult::kRepeated);
+  const BusListener::Total& total = listener.totals().at("VEH_WheelSpeed");
+  EXPECT_EQ(total.frames, 5U);
+  EXPECT_EQ(total.unusable, 1U);
+  EXPECT_EQ(total.lost, 2U);
 }
 
 }  // namespace

@@ -79,6 +79,15 @@ TEST_F(SecocFilesTest, AStartThatCannotBeCountedIsRefused) {
   }
 }
 
+TEST_F(SecocFilesTest, AFileThatCannotBeLookedForIsNoMissingFile) {
+  const std::filesystem::path too_long = folder_ / std::string(300, 'x');
+  for (const auto& number : {read_start_number(too_long), next_start_number(too_long)}) {
+    ASSERT_FALSE(number);
+    EXPECT_THAT(number.error().message, testing::StartsWith(too_long.string()));
+    EXPECT_THAT(number.error().message, HasSubstr("File name too long"));
+  }
+}
+
 TEST_F(SecocFilesTest, AFolderThatCannotBeWrittenIsNamedWithTheCause) {
   const auto number = next_start_number(folder_ / "none/starts");
   ASSERT_FALSE(number);

@@ -102,26 +102,67 @@ TEST(DbcSamplePairingTest, APositionIsThatOfOneCycleBesideASlowSigma) {
   EXPECT_EQ(samples, 6) << "one for each sigma";
 }
 
-TEST(DbcSamplePairingTest, PagesOfOneMessageGiveAPosition) {
+/// Returns the number of positions from 200 frames. A message carries one page after the other, as
+/// many as `pages`. Page 0 has the latitude, and `longitude_page` has the longitude.
+uint64_t positions_of_pages(int pages, int longitude_page) {
   VehicleBinding paged = binding();
   paged.messages.push_back(
       {.name = "B", .id = 17, .length = 8, .cycle = kPositionCycle, .protection = {}});
-  for (const uint64_t page : {1, 2}) {
-    paged.signals.push_back({.name = "S",
-                             .message = 1,
-                             .layout = kFineValue,
-                             .multiplexed = BoundSignal::Multiplexed{kPage, page},
-                             .available = {-500.0, 500.0}});
+  for (const int page : {0, longitude_page}) {
+    paged.signals.push_back(
+        {.name = "S",
+         .message = 1,
+         .layout = kFineValue,
+         .multiplexed = BoundSignal::Multiplexed{kPage, static_cast<uint64_t>(page)},
+         .available = {-500.0, 500.0}});
   }
   paged.gnss = {.latitude = 4, .longitude = 5, .sigma_m = 1.0};
   DbcVehicleInput input(paged, {}, {49.0, 8.4}, 1.6);
-  for (int cycle = 1; cycle <= 40; ++cycle) {
-    const bool is_latitude = cycle % 2 == 1;
-    Frame frame = frame_with(17, kFineValue, is_latitude ? 49.0 : 8.4);
-    insert_bits(kPage, is_latitude ? 1 : 2, {frame.data.data(), frame.length});
+  for (int cycle = 1; cycle <= 200; ++cycle) {
+    const int page = cycle % pages;
+    Frame frame = frame_with(17, kFineValue, page == 0 ? 49.0 : 8.4);
+    insert_bits(kPage, static_cast<uint64_t>(page), {frame.data.data(), frame.length});
     input.accept({frame, Time(cycle * kPositionCycle)});
   }
-  EXPECT_GT(input.counters().gnss_samples, 15U);
+  return input.counters().gnss_samples;
+}
+
+TEST(DbcSamplePairingTest, PagesOfOneMessageGiveAPosition) {
+  EXPECT_GT(positions_of_pages(2, 1), 90U);
+  EXPECT_GT(positions_of_pages(10, 5), 15U) << "one a second";
+}
+
+/// One of eight frames says whether the vehicle reverses.
+TEST(DbcSamplePairingTest, AConditionMayComeWithOnePageOfMany) {
+  VehicleBinding paged = binding();
+  paged.signals[paged.wheels.backward->signal].multiplexed = BoundSignal::Multiplexed{kPage, 1};
+  DbcVehicleInput input(paged, {}, {49.0, 8.4}, 1.6);
+  const auto send = [&](int cycle) {
+    Frame frame = frame_with(16, kSpeed, 2.0);
+    insert_bits(kPage, static_cast<uint64_t>(cycle % 8), {frame.data.data(), frame.length});
+    return input.accept({frame, Time(cycle * kCycle)}).odometry;
+  };
+  for (int cycle = 1; cycle <= 10; ++cycle) send(cycle);  // 200 ms
+  const uint64_t before = input.counters().not_available;
+  for (int cycle = 11; cycle <= 500; ++cycle) EXPECT_TRUE(send(cycle)) << cycle;
+  EXPECT_EQ(input.counters().not_available, before);
+}
+
+TEST(DbcSamplePairingTest, AConditionOfASeldomPageHoldsForTwoSeconds) {
+  VehicleBinding paged = binding();
+  paged.signals[paged.wheels.backward->signal].multiplexed = BoundSignal::Multiplexed{kPage, 1};
+  DbcVehicleInput input(paged, {}, {49.0, 8.4}, 1.6);
+  const auto send = [&](int cycle, bool has_condition) {
+    Frame frame = frame_with(16, kSpeed, 2.0);
+    insert_bits(kPage, has_condition ? 1 : 0, {frame.data.data(), frame.length});
+    return input.accept({frame, Time(cycle * kCycle)}).odometry.has_value();
+  };
+  constexpr int kSecond = 50;
+  for (int cycle = 1; cycle <= 5 * kSecond; ++cycle) send(cycle, cycle % kSecond == 0);
+  // The page no longer comes.
+  int samples = 0;
+  for (int cycle = 1; cycle <= 10 * kSecond; ++cycle) samples += send(5 * kSecond + cycle, false);
+  EXPECT_EQ(samples, 2 * kSecond);
 }
 
 }  // namespace
