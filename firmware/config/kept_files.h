@@ -11,7 +11,7 @@
 namespace bevloc::firmware {
 
 /// The bytes of small files. bevlocd runs for days with what it read at its start, and somebody may
-/// change a file meanwhile. What bevlocd says about such a file is then still true of what it uses.
+/// change a file meanwhile. So what bevlocd says about a file stays true of the bytes that it uses.
 class KeptFiles {
  public:
   /// Reads a file and keeps its bytes. Keeps nothing of a file that cannot be read.

@@ -47,6 +47,11 @@ struct Base {
   std::unique_ptr<LiveServer> live;  ///< null without one
 };
 
+/// Shows a phase without an appliance on the live page, if there is one.
+void show_phase(Phase phase, Base& base) {
+  if (base.live) base.live->publish({phase, base.clock.now(), {}, {}});
+}
+
 /// Waits until the ignition is on. Returns false if the daemon shall end. No thread of the
 /// appliance runs meanwhile, so this thread feeds the watchdog itself.
 bool wait_for_ignition(Base& base, const DaemonHost& host) {
@@ -56,7 +61,7 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
       spdlog::info("ignition off: standby");
       notifier.ready();
       notifier.status("standby: ignition off");
-      if (base.live) base.live->publish({Phase::kStandby, base.clock.now(), {}, {}});
+      show_phase(Phase::kStandby, base);
     }
     notifier.feed_watchdog();
     if (host.stop()) {
@@ -67,6 +72,7 @@ bool wait_for_ignition(Base& base, const DaemonHost& host) {
   }
   // Nobody can feed the watchdog while the appliance starts.
   notifier.set_watchdog_timeout(kChangeTimeout);
+  show_phase(Phase::kStarting, base);
   return true;
 }
 
@@ -119,9 +125,12 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
     const ApplianceView& view = supervisor.view();
     ignition = base.lines->step(is_lit(shown.of(view.state, view.lost, now), now), now);
     const bool goes_on = ignition && !host.stop();
-    // Nobody can feed the watchdog while the devices close. When the daemon itself ends, systemd
-    // waits longer anyway.
-    if (!ignition) ServiceNotifier().set_watchdog_timeout(kChangeTimeout);
+    // Nobody can feed the watchdog, or publish, while the devices close. When the daemon itself
+    // ends, systemd waits longer anyway.
+    if (!ignition) {
+      ServiceNotifier().set_watchdog_timeout(kChangeTimeout);
+      show_phase(Phase::kStandby, base);
+    }
     if (!goes_on) watching.request_stop();  // the fault line becomes active
     return goes_on;
   });

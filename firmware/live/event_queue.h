@@ -30,7 +30,7 @@ class EventQueue {
     filled_.notify_all();
   }
 
-  /// Returns the number of events until now, with which a new viewer starts.
+  /// Returns the number of the next event, with which a new viewer starts.
   uint64_t end() const {
     const std::lock_guard lock(mutex_);
     return pushed_;

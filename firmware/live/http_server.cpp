@@ -26,6 +26,9 @@ namespace {
 using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr int kBacklog = 128;
+/// The send buffer of a connection. Without this limit the kernel buffers up to 4 MB, and a slow
+/// link needs a minute to send them.
+constexpr int kSendBuffer_bytes = 128 << 10;
 
 httplib::Server::HandlerResponse refuse(httplib::Response& response, int status, const char* text) {
   response.status = status;
@@ -184,6 +187,8 @@ class HttpServer::Impl {
       FileDescriptor socket(
           accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
       if (socket.get() < 0) break;
+      setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kSendBuffer_bytes,
+                 sizeof(kSendBuffer_bytes));
       if (waiting_.size() >= limits_.waiting) waiting_.pop_front();
       waiting_.push_back({std::move(socket), now + limits_.idle});
     }

@@ -53,8 +53,11 @@ std::string server_sent_event(const char* name, const json& data) {
 
 }  // namespace
 
-std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age) {
-  return server_sent_event("status", status_json(telemetry, process, age));
+std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age,
+                         Duration sent) {
+  json status = status_json(telemetry, process, age);
+  status["sent_s"] = rounded(to_seconds(sent), 1e3);
+  return server_sent_event("status", status);
 }
 
 std::string trail_event(const std::deque<TrailPoint>& trail) {

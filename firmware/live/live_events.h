@@ -22,7 +22,10 @@ struct TrailPoint {
 
 // These functions return the events, whose keys docs/live.md describes.
 
-std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age);
+/// `sent` is the time of a clock of the machine that goes on at real time, also in a drive with
+/// --fast and while the machine is suspended. Its zero is arbitrary.
+std::string status_event(const Telemetry& telemetry, const ProcessUse& process, Duration age,
+                         Duration sent);
 /// Returns the event with the trail. Each point is [x, y, valid, begins], where valid and begins
 /// are 0 or 1.
 std::string trail_event(const std::deque<TrailPoint>& trail);

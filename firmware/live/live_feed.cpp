@@ -16,6 +16,14 @@ LiveFeed::LiveFeed(const Rig& rig, int hypotheses) {
   for (std::vector<float>& axis : sample_.probabilities) axis.reserve(hypotheses);
 }
 
+void LiveFeed::set_viewers(int viewers) {
+  if (viewers_ == 0) {
+    State full = State::kFull;
+    state_.compare_exchange_strong(full, State::kFree);
+  }
+  viewers_ = viewers;
+}
+
 void LiveFeed::offer(const VisionSnapshot& snapshot) {
   if (viewers_.load(std::memory_order_relaxed) == 0) return;
   const Time time = snapshot.frameset.time;

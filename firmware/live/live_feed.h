@@ -48,7 +48,8 @@ class LiveFeed {
   /// Calls `draw` with the copy, if there is a new one. Returns whether there was.
   bool take(const std::function<void(const LiveSample&)>& draw);
 
-  void set_viewers(int viewers) { viewers_ = viewers; }
+  /// When the first viewer comes, discards a copy that was made for earlier viewers.
+  void set_viewers(int viewers);
 
  private:
   enum class State : uint8_t { kFree, kWriting, kFull, kReading };

@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/json_dump.h"
+#include "common/kernel_time.h"
 #include "firmware/live/event_queue.h"
 #include "firmware/live/http_server.h"
 #include "firmware/live/httplib_header.h"
@@ -166,7 +167,7 @@ void LiveServer::Impl::add_routes() {
   });
   http_->get("/status.json", [this](const httplib::Request&, httplib::Response& response) {
     const auto [latest, age] = telemetry();
-    response.set_content(dump_json(status_json(latest, use_of_this_process(), age), 2) + "\n",
+    response.set_content(json_document(status_json(latest, use_of_this_process(), age)),
                          "application/json");
   });
   http_->get("/healthz", [this](const httplib::Request&, httplib::Response& response) {
@@ -267,7 +268,8 @@ void LiveServer::Impl::draw() {
   const std::lock_guard lock(scene_mutex_);
   if (time >= status_due_) {
     status_due_ = time + kStatusPeriod;
-    events_.push(status_event(latest, use_of_this_process(), age));
+    const Duration sent = read_clock(CLOCK_BOOTTIME);
+    events_.push(status_event(latest, use_of_this_process(), age, sent));
     if (map_ != nullptr) send_scene(*map_, latest.snapshot.estimation.pose);
   }
   if (map_ == nullptr) return;

@@ -1,6 +1,7 @@
 #include "firmware/live/status_command.h"
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <memory>
 
@@ -19,6 +20,9 @@ namespace bevloc::firmware {
 namespace {
 
 constexpr time_t kPatience_s = 3;
+/// A status is much smaller and comes at once. An answer beyond these limits is of another program.
+constexpr size_t kLargestStatus_bytes = 1'000'000;
+constexpr std::chrono::seconds kLongestAnswer(5);
 
 /// Accepts the addresses that the server answers to (is_local_host_header() in http_server.cpp).
 std::string check_address(const std::string& text) {
@@ -64,22 +68,30 @@ Result<Answer> ask(const std::string& address, int port) {
   client.set_connection_timeout(kPatience_s);
   client.set_read_timeout(kPatience_s);
   const std::string place = authority_of({address, port, false});
-  const auto response = client.Get("/status.json");
-  if (!response) {
+  std::string text;
+  const auto until = std::chrono::steady_clock::now() + kLongestAnswer;
+  const auto response = client.Get("/status.json", [&](const char* part, size_t size) {
+    text.append(part, size);
+    return text.size() <= kLargestStatus_bytes && std::chrono::steady_clock::now() < until;
+  });
+  const bool endless = response.error() == httplib::Error::Canceled;
+  if (!response && !endless) {
     return fail(
         "{}: found no bevlocd that answers ({}), wanted one with the section live in its "
         "configuration or the option --live",
         place, reason_of(response.error(), address, port));
   }
-  if (response->status != 200) {
+  if (endless) {
+    text.clear();
+  } else if (response->status != 200) {
     return fail("{}: found the answer {}, wanted 200 from a bevlocd", place, response->status);
   }
-  auto status = nlohmann::json::parse(response->body, nullptr, false);
+  auto status = nlohmann::json::parse(text, nullptr, false);
   if (!status.is_object() || !status.contains("phase")) {
     return fail("{}: found an answer that is no status of a bevlocd; is another program there?",
                 place);
   }
-  return Answer{response->body, std::move(status)};
+  return Answer{std::move(text), std::move(status)};
 }
 
 }  // namespace
@@ -100,7 +112,6 @@ void StatusCommand::declare(CLI::App& app) {
       "Examples:\n"
       "  bevloc status                 the daemon of this machine\n"
       "  bevloc status --port 9000 --json");
-  command->callback([this] { chosen_ = true; });
 }
 
 int StatusCommand::run() const {

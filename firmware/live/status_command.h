@@ -16,14 +16,12 @@ class StatusCommand {
   static constexpr int kNotReachable = 2;
 
   void declare(CLI::App& app);
-  bool chosen() const { return chosen_; }
 
   /// Prints the page, or with --json what the daemon sent, on stdout. Prints one line on stderr if
   /// the daemon is not reachable or does not answer as it should. Returns the exit code.
   int run() const;
 
  private:
-  bool chosen_ = false;
   std::string address_ = "127.0.0.1";
   int port_ = 8080;
   bool json_ = false;

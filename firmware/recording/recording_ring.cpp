@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <iterator>
+#include <map>
 #include <vector>
 
 #include <spdlog/spdlog.h>
@@ -66,6 +68,8 @@ struct Listed {
   uint64_t bytes = 0;
   uint64_t begin_ns = 0;   ///< log time in the name
   uint64_t latest_ns = 0;  ///< this time, or the time of the last change if that is later
+  ino_t inode = 0;         ///< the same for all names (hard links) of a file
+  nlink_t names = 0;       ///< how many names the file has
 };
 
 /// Returns nothing if the path is not a regular file or no longer exists.
@@ -74,8 +78,10 @@ std::optional<Listed> listed(const fs::path& path) {
   if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
   const uint64_t begin_ns = log_time_in(path.filename().string());
   const auto changed_s = static_cast<uint64_t>(std::max<time_t>(0, status.st_mtim.tv_sec));
-  return Listed{path, static_cast<uint64_t>(status.st_size), begin_ns,
-                std::max(begin_ns, changed_s * kLogSecond_ns)};
+  const uint64_t latest_ns = std::max(begin_ns, changed_s * kLogSecond_ns);
+  return Listed{path,          static_cast<uint64_t>(status.st_size),
+                begin_ns,      latest_ns,
+                status.st_ino, status.st_nlink};
 }
 
 /// Lists the recordings in the folder of `newest` in the order of deletion. Files with a later time
@@ -92,6 +98,17 @@ std::vector<Listed> list_recordings(const fs::path& newest) {
   const auto later = std::ranges::upper_bound(files, newest, {}, &Listed::path);
   std::rotate(files.begin(), later, files.end());
   return files;
+}
+
+/// Returns how many bytes become free when these files are deleted. A file with several names
+/// counts once, and only if all its names are among them.
+uint64_t bytes_to_free(const std::vector<Listed>& files) {
+  std::map<ino_t, nlink_t> names;
+  uint64_t bytes = 0;
+  for (const Listed& file : files) {
+    if (++names[file.inode] == file.names) bytes += file.bytes;
+  }
+  return bytes;
 }
 
 /// Returns whether the file is gone.
@@ -190,17 +207,25 @@ uint64_t RecordingRing::missing_bytes() const {
 }
 
 Status RecordingRing::make_room(const fs::path& newest) const {
+  if (missing_bytes() == 0) return {};
+  std::vector<Listed> files;
   for (const fs::path& folder : {config_.directory, config_.directory / kBlackBoxFolder}) {
-    if (missing_bytes() == 0) return {};
-    for (const Listed& file : list_recordings(folder / newest.filename())) {
-      if (missing_bytes() == 0 || file.path.filename() == newest.filename()) break;
-      remove_file(file.path);
+    std::ranges::copy_if(
+        list_recordings(folder / newest.filename()), std::back_inserter(files),
+        [&](const Listed& file) { return file.path.filename() != newest.filename(); });
+  }
+  uint64_t missing = missing_bytes();
+  if (bytes_to_free(files) >= missing) {
+    for (size_t i = 0; i < files.size() && missing > 0; ++i) {
+      remove_file(files[i].path);
+      missing = missing_bytes();
     }
   }
-  const uint64_t missing = missing_bytes();
   if (missing == 0) return {};
-  return fail("{}: found a full disk after old recordings were deleted, wanted {:.0f} MB more",
-              config_.directory.string(), std::ceil(1e-6 * static_cast<double>(missing)));
+  return fail(
+      "{}: found a full disk on which old recordings do not make enough room, wanted {:.0f} MB "
+      "more; delete other files",
+      config_.directory.string(), std::ceil(1e-6 * static_cast<double>(missing)));
 }
 
 Status RecordingRing::write(std::string_view topic, const google::protobuf::Message& message,
@@ -229,9 +254,12 @@ Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
   std::error_code error;
   fs::create_directories(folder, error);  // somebody may have deleted it during the drive
   if (error) return refuse_folder(config_.directory, error.message());
+  fs::path newest = folder / recent_.back().path.filename();
+  fs::path oldest = newest;  // of the last minute
   for (const RecentFile& file : recent_) {
     const bool is_newest = &file == &recent_.back();
     if (!is_newest && file.end_ns + covered < log_time_ns) continue;
+    oldest = std::min(oldest, folder / file.path.filename());
     fs::create_hard_link(file.path, folder / file.path.filename(), error);
     // A ring that is shorter than the black box has deleted the oldest of these files.
     const bool was_deleted = error == std::errc::no_such_file_or_directory && !is_newest;
@@ -241,9 +269,12 @@ Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
           file.path.string(), folder.string(), error.message());
     }
   }
-  fs::path newest = folder / recent_.back().path.filename();
   const std::vector<Listed> kept = list_recordings(newest);
-  const auto most = static_cast<size_t>(config_.black_box_files);
+  const auto of_last_minute = std::ranges::count_if(
+      kept, [&](const Listed& file) { return file.path >= oldest && file.path <= newest; });
+  // These files are the last ones of the list, and none of them is deleted.
+  const auto most =
+      static_cast<size_t>(std::max<ptrdiff_t>(config_.black_box_files, of_last_minute));
   for (size_t i = 0; i + most < kept.size(); ++i) remove_file(kept[i].path);
   return newest;
 }

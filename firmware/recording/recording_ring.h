@@ -21,7 +21,8 @@ Status check_folder(const std::filesystem::path& directory);
 /// a year, deletes no file because of its age. keep() gives the files of the last minute a second
 /// name (a hard link) in the folder `kept`, which the ring does not delete. The file that is being
 /// written can be kept too: it grows under both names. If the disk is full, deletes the oldest
-/// files of the ring, and then those in `kept`. One thread.
+/// files of the ring, and then those in `kept`. Deletes none if all of them together would not free
+/// enough. One thread.
 class RecordingRing {
  public:
   /// The time before an event that the black box covers.
@@ -42,7 +43,8 @@ class RecordingRing {
   Status step(uint64_t log_time_ns);
   Status finish() { return file_->finish(); }
 
-  /// Keeps the files of the last minute. Returns the name of the newest of them.
+  /// Keeps the files of the last minute, and deletes the oldest other files in `kept` beyond
+  /// `black_box_files`. Returns the name of the newest file that was kept.
   Result<std::filesystem::path> keep(uint64_t log_time_ns);
 
   uint64_t bytes_written() const { return bytes_of_closed_ + file_->bytes_written(); }
@@ -63,7 +65,8 @@ class RecordingRing {
   /// deleted, but counts if it exists.
   void delete_old(const std::filesystem::path& newest, uint64_t log_time_ns);
   void warn_of_the_clock();
-  /// Deletes old files until enough of the disk is free. Fails if not enough can be deleted.
+  /// Deletes old files until enough of the disk is free. Fails without deleting any if all of them
+  /// together would not free enough.
   Status make_room(const std::filesystem::path& newest) const;
   /// Returns how many bytes are missing of those that the ring leaves free on the disk.
   uint64_t missing_bytes() const;

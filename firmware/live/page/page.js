@@ -1,9 +1,10 @@
 // The live page: draws what the server sends at /events. docs/live.md describes the events.
 import {drawCameras, makeCameras, onCamera} from "./cameras.js";
-import {byId, setChildren, setText, setTitle} from "./drawing.js";
+import {byId, setText} from "./drawing.js";
+import {beginConnection} from "./lateness.js";
 import {drawMatch, makePlots, onMatch} from "./match.js";
 import {shown} from "./state.js";
-import {onStatus} from "./status.js";
+import {onStatus, showOutdated} from "./status.js";
 import {drawTrail} from "./trail.js";
 
 const STALE_MS = 3000;
@@ -31,14 +32,9 @@ function noteAge() {
 
 export function noteSilence() {
   noteAge();
-  const silent = performance.now() - lastEvent_ms > STALE_MS;
-  document.body.classList.toggle("stale", silent);
-  if (!silent) return;
-  setTitle("NO DATA");
-  setText(byId("state"), "NO DATA");
-  byId("state").className = "badge bad";
-  setText(byId("summary"), refusal + " The page tries again by itself.");
-  setChildren(byId("why"), []);
+  if (performance.now() - lastEvent_ms > STALE_MS) {
+    showOutdated("NO DATA", refusal + " The page tries again by itself.");
+  }
 }
 
 /// The browser does not tell why the request for events was refused, so this asks with HEAD.
@@ -61,6 +57,7 @@ function connect() {
   on("match", onMatch);
   on("map", (map) => { shown.map = map; drawTrail(); });
   on("trail", (trail) => { shown.trail = trail; drawTrail(); });
+  source.onopen = beginConnection;
   source.onerror = () => {
     if (source.readyState !== EventSource.CLOSED) return;  // the browser tries again
     noteRefusal();

@@ -1,12 +1,30 @@
 // The state with its reasons, the facts beside it and the tables.
 import {byId, element, setChildren, setText, setTitle} from "./drawing.js";
+import {latenessOf} from "./lateness.js";
 import {shown} from "./state.js";
 import {drawTrail, noteTrail} from "./trail.js";
 
 const RATES_S = 3;  // rates are averaged over this many seconds
 const earlier = [];  // the statuses of the last RATES_S
 
+/// Says in place of the state why the page does not show the present one, and fades the page.
+export function showOutdated(word, reason) {
+  document.body.classList.add("stale");
+  setTitle(word);
+  setText(byId("state"), word);
+  byId("state").className = "badge bad";
+  setText(byId("summary"), reason);
+  setChildren(byId("why"), []);
+}
+
 function showState(status) {
+  const late_s = latenessOf(status.sent_s);
+  if (late_s > 0) {
+    showOutdated("LATE", `The page shows what was ${late_s.toFixed(0)} s ago, because the connection ` +
+      "or the browser is too slow.");
+    return;
+  }
+  document.body.classList.remove("stale");
   const badge = byId("state");
   setText(badge, status.state || status.phase.toUpperCase());
   const kind = !status.healthy ? "bad" : status.valid && !status.why.length ? "good" : "warn";

@@ -3,6 +3,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +16,8 @@
 #include "common/crc32.h"
 #include "common/files.h"
 #include "common/sha256.h"
+#include "firmware/live/http_server.h"
+#include "firmware/live/httplib_header.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "tests/firmware/log_capture.h"
 #include "tests/firmware/runtime/fake_manager.h"
@@ -26,6 +33,28 @@ using test::MockGpio;
 const std::filesystem::path kSourceFolder = BEVLOC_SOURCE_DIR;
 /// The daemon calls `stop` ten times per second. After this many calls the test fails.
 constexpr int kMaxCalls = 300;
+
+/// An endpoint that calls a function when it is closed.
+class ClosingBus final : public can::Bus {
+ public:
+  ClosingBus(std::unique_ptr<can::Bus> bus, std::function<void()> closes)
+      : bus_(std::move(bus)), closes_(std::move(closes)) {}
+  ~ClosingBus() override { closes_(); }
+  ClosingBus(const ClosingBus&) = delete;
+  ClosingBus& operator=(const ClosingBus&) = delete;
+
+  can::SendResult send(const can::Frame& frame, Time now) override {
+    return bus_->send(frame, now);
+  }
+  std::optional<can::ReceivedFrame> receive() override { return bus_->receive(); }
+  bool wait(Duration timeout) override { return bus_->wait(timeout); }
+  can::BusCounters counters() const override { return bus_->counters(); }
+  can::BusCondition condition() const override { return bus_->condition(); }
+
+ private:
+  const std::unique_ptr<can::Bus> bus_;
+  const std::function<void()> closes_;
+};
 
 class DaemonTest : public testing::Test {
  protected:
@@ -48,7 +77,7 @@ class DaemonTest : public testing::Test {
   Status run(const std::function<bool()>& stop) {
     const auto rig = read_rig(kSourceFolder / "config/rig_demo.yaml");
     EXPECT_TRUE(rig) << rig.error().message;
-    return run_daemon(config_, *rig, {gpio_, [this] { return wire_.connect(); }, stop, nullptr});
+    return run_daemon(config_, *rig, {gpio_, open_bus_, stop, nullptr});
   }
 
   /// Runs, switches the ignition off, calls `change` in standby, and switches the ignition on
@@ -87,6 +116,7 @@ class DaemonTest : public testing::Test {
   drivers::MonotonicClock clock_;
   MockGpio gpio_{{"trigger", "fault", "ignition"}, clock_};
   can::MockWire wire_{4096};
+  OpenBus open_bus_ = [this] { return wire_.connect(); };
 };
 
 TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
@@ -132,6 +162,26 @@ TEST_F(DaemonTest, WaitsInStandbyWhileTheIgnitionIsOffAndRunsAgain) {
   // All lines were released.
   EXPECT_TRUE(gpio_.open_input({MockGpio::kChip, "ignition"}));
   EXPECT_TRUE(gpio_.open_output({MockGpio::kChip, "trigger"}, false));
+}
+
+TEST_F(DaemonTest, SaysWhatItDoesWhileTheIgnitionChanges) {
+  const int port = HttpServer::open("127.0.0.1", 0).value()->port();  // it is free again
+  config_.live.emplace().port = port;
+  const auto health = [port] {
+    const auto answer = httplib::Client("127.0.0.1", port).Get("/healthz");
+    return answer ? answer->body : "no answer";
+  };
+  std::vector<std::string> opening;
+  std::vector<std::string> closing;
+  open_bus_ = [&] {
+    opening.push_back(health());
+    return std::make_unique<ClosingBus>(wire_.connect(), [&] { closing.push_back(health()); });
+  };
+  const Status status = run_again_after([] {});
+  EXPECT_TRUE(status) << status.error().message;
+  EXPECT_THAT(opening, testing::ElementsAre("starting\n", "starting\n"));
+  ASSERT_EQ(closing.size(), 2U);
+  EXPECT_EQ(closing[0], "standby: ignition off\n");
 }
 
 TEST_F(DaemonTest, ChecksTheManifestAgainWhenTheIgnitionReturns) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <future>
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -246,6 +247,32 @@ TEST_F(HttpServerTest, EndsAClientThatDoesNotRead) {
   const RawClient client(server_->port());
   client.send("GET /big HTTP/1.1\r\nHost: localhost\r\n\r\n");
   expect_alive();  // with the only worker
+}
+
+TEST_F(HttpServerTest, SendsNotFarAheadOfAClientThatDoesNotRead) {
+  HttpLimits limits;
+  limits.write = milliseconds(100);
+  auto opened = HttpServer::open("127.0.0.1", 0, limits);
+  ASSERT_TRUE(opened) << opened.error().message;
+  server_ = std::move(*opened);
+  size_t sent_bytes = 0;
+  std::promise<void> ended;
+  server_->get("/events", [&](const httplib::Request&, httplib::Response& response) {
+    const auto write = [&](size_t, httplib::DataSink& sink) {
+      const std::string event(10'000, 'a');
+      const bool taken = sink.write(event.data(), event.size());
+      if (taken) sent_bytes += event.size();
+      return taken;
+    };
+    response.set_chunked_content_provider("text/event-stream", write,
+                                          [&](bool) { ended.set_value(); });
+  });
+  server_->start();
+  const RawClient client(server_->port());
+  client.send("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  ended.get_future().wait();
+  EXPECT_GT(sent_bytes, 0U);
+  EXPECT_LT(sent_bytes, 1'000'000U) << "events of minutes on a slow link";
 }
 
 TEST_F(HttpServerTest, StandsAThousandIdleConnections) {

@@ -92,6 +92,15 @@ TEST_F(LiveEventsTest, ADamagedImageGivesNoEvent) {
   EXPECT_EQ(camera_event(index, made_.rig, sample_, pictures), "");
 }
 
+TEST_F(LiveEventsTest, AStatusSaysWhenItWasSentAlsoInStandby) {
+  for (const Phase phase : {Phase::kStandby, Phase::kRunning}) {
+    Telemetry telemetry;
+    telemetry.phase = phase;
+    const std::string event = status_event(telemetry, {}, {}, std::chrono::milliseconds(12'345));
+    EXPECT_DOUBLE_EQ(data_of(event, "status")["sent_s"].get<double>(), 12.345);
+  }
+}
+
 TEST_F(LiveEventsTest, TheTrailSaysWhereItWasInterrupted) {
   EXPECT_EQ(trail_event({{1.234, 2.0, true, false}, {5.0, 6.0, false, true}}),
             "event: trail\ndata: [[1.23,2.0,1,0],[5.0,6.0,0,1]]\n\n");

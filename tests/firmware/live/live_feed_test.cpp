@@ -42,6 +42,20 @@ TEST_F(LiveFeedTest, CopiesNothingWithoutViewers) {
   EXPECT_EQ(made_.masks_computed, 0);
 }
 
+TEST_F(LiveFeedTest, AFirstViewerGetsNothingThatWasCopiedForEarlierOnes) {
+  const auto take = [this] { return feed_.take([](const LiveSample&) {}); };
+  made_.frameset.time = Time(milliseconds(1000));
+  feed_.set_viewers(1);
+  feed_.offer(made_.snapshot());
+  feed_.set_viewers(0);
+  feed_.set_viewers(1);
+  EXPECT_FALSE(take());
+  made_.frameset.time = Time(milliseconds(2000));
+  feed_.offer(made_.snapshot());
+  feed_.set_viewers(2);
+  EXPECT_TRUE(take()) << "a further viewer takes nothing from the first one";
+}
+
 TEST_F(LiveFeedTest, CopiesOneCameraAfterTheOther) {
   feed_.set_viewers(1);
   for (int i = 0; i < 2 * kCameraCount; ++i) {

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "firmware/live/http_server.h"
 #include "firmware/live/httplib_header.h"
 #include "firmware/live/status_command.h"
 
@@ -54,14 +55,17 @@ class LiveServerTest : public testing::Test {
 
   /// The exit code of `bevloc status` with these arguments.
   int status(const std::vector<std::string>& arguments) const {
+    return status_at(server_->port(), arguments);
+  }
+  static int status_at(int port, const std::vector<std::string>& arguments) {
     CLI::App app;
     StatusCommand command;
     command.declare(app);
-    std::vector<std::string> words{"status", "--port", std::to_string(server_->port())};
+    std::vector<std::string> words{"status", "--port", std::to_string(port)};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::reverse(words.begin(), words.end());
     app.parse(words);
-    EXPECT_TRUE(command.chosen());
+    EXPECT_TRUE(app.got_subcommand("status"));
     return command.run();
   }
 
@@ -114,6 +118,21 @@ TEST_F(LiveServerTest, BevlocStatusSaysThatNobodyAnswers) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(status({"--address", "127.0.0.2"}), StatusCommand::kNotReachable);
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("found no bevlocd that answers"));
+}
+
+TEST_F(LiveServerTest, BevlocStatusEndsAlsoIfAnotherProgramSendsWithoutEnd) {
+  auto other = HttpServer::open("127.0.0.1", 0);
+  ASSERT_TRUE(other) << other.error().message;
+  (*other)->get("/status.json", [](const httplib::Request&, httplib::Response& response) {
+    response.set_chunked_content_provider("text/plain", [](size_t, httplib::DataSink& sink) {
+      const std::string part(10'000, 'a');
+      return sink.write(part.data(), part.size());
+    });
+  });
+  (*other)->start();
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(status_at((*other)->port(), {}), StatusCommand::kNotReachable);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("is another program there?"));
 }
 
 TEST_F(LiveServerTest, BevlocStatusTakesNoNameThatTheServerRefuses) {

@@ -51,6 +51,7 @@ def status(**changes: Any) -> dict[str, Any]:
         "valid": True,
         "why": [],
         "time_s": 1.0,
+        "sent_s": 1.0,
         "pose": None,
         "rate_hz": 10.0,
         "latency_ms": {"median": 40.0, "p99": 50.0, "count": 1},
@@ -115,6 +116,13 @@ WATCH = """window.written = new Set(); new MutationObserver((changes) => {
 }).observe(document, {subtree: true, childList: true, characterData: true})"""
 # No time passes until LATER, so that the page does not notice that the test sends no events.
 STILL = "performance.now = () => 0"
+# What the page shows right after a status, before it can notice that the test sends no events.
+AT_ONCE = """import('/status.js').then((m) => {
+  performance.now = () => %f;
+  m.onStatus(%s);
+  return [document.title, document.getElementById('summary').textContent,
+          document.body.classList.contains('stale')];
+})"""
 LATER = "(now => { performance.now = () => now + 4000; })(performance.now())"
 
 
@@ -195,6 +203,7 @@ class PageTest(unittest.TestCase):
                 "healthy": True,
                 "health": "standby: ignition off",
                 "valid": False,
+                "sent_s": 1.0,
             },
         )
         for part in ("rate", "latency", "speed", "can", "place"):
@@ -217,6 +226,22 @@ class PageTest(unittest.TestCase):
         self.call("page", "noteSilence")
         self.assertEqual(self.page.evaluate("document.title"), "NO DATA · bevloc")
         self.assertLess(float(self.page.evaluate(opacity)), 1.0)
+
+    def test_a_slow_connection_does_not_look_current(self) -> None:
+        def shown(at_s: float, sent_s: float) -> Any:
+            message = json.dumps(status(sent_s=sent_s))
+            return self.page.evaluate(AT_ONCE % (1000 * at_s, message))
+
+        now = ["TRACKING · bevloc", "The pose may be used.", False]
+        late = (
+            "The page shows what was 18 s ago, because the connection or the browser is too slow."
+        )
+        self.assertEqual(shown(0, 1), now)
+        self.assertEqual(shown(2, 1.5), now, "a delay of 1.5 s")
+        self.assertEqual(shown(10, 2)[0], "LATE · bevloc")
+        self.assertEqual(shown(20, 3), ["LATE · bevloc", late, True])
+        self.assertEqual(shown(21, 21.5), now, "it has caught up")
+        self.assertEqual(shown(90_000, 89_991.5), now, "a day later the clocks have drifted apart")
 
     def test_it_shows_images_that_are_unreadable_and_cameras_that_failed(self) -> None:
         bad = status()

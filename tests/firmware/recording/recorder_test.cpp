@@ -141,6 +141,25 @@ TEST_F(RecorderTest, LostKeepsWhatAShortRingStillHas) {
   EXPECT_EQ(files_in(config_.directory / "kept"), 9U) << "ten files, of which the first is gone";
 }
 
+TEST_F(RecorderTest, LostKeepsTheLastMinuteAlsoInManyFiles) {
+  config_.file_length = std::chrono::seconds(1);
+  config_.black_box_files = 2;
+  const fs::path of_earlier_run = leave("kept/bevloc-20400224T000000Z-0001.mcap", 10);
+  const fs::path of_the_future = leave("kept/bevloc-20500101T000000Z-0001.mcap", 10);
+  const auto recorder = open();
+  for (int second = 0; second < 10; ++second) {
+    const Time now{std::chrono::seconds(second)};
+    recorder->note_solution(report(HealthState::kTracking, now));
+    recorder->write_queued(now);
+  }
+  const Time lost{std::chrono::seconds(10)};
+  recorder->note_solution(report(HealthState::kLost, lost));
+  recorder->write_queued(lost);
+  EXPECT_EQ(files_in(config_.directory / "kept"), 10U);
+  EXPECT_FALSE(fs::exists(of_earlier_run));
+  EXPECT_FALSE(fs::exists(of_the_future));
+}
+
 TEST_F(RecorderTest, LostKeepsTheLastMinute) {
   config_.file_length = std::chrono::seconds(30);
   const auto recorder = open();
