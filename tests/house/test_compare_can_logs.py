@@ -2,25 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.machinery
-import importlib.util
-import sys
 import unittest
 from types import ModuleType
 
-from tests.house.test_documents import ROOT
-
-
-def load() -> ModuleType:
-    loader = importlib.machinery.SourceFileLoader(
-        "compare_can_logs", str(ROOT / "script/compare-can-logs")
-    )
-    spec = importlib.util.spec_from_loader(loader.name, loader)
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[loader.name] = module
-    loader.exec_module(module)
-    return module
+from tests.support.script_module import load_script
 
 
 class CompareTest(unittest.TestCase):
@@ -28,7 +13,7 @@ class CompareTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        cls.script = load()
+        cls.script = load_script("compare-can-logs")
 
     def frame(self, value: float | None, message: str = "M") -> object:
         return self.script.Frame(0.5, message, {"CHECKSUM": value, "S": value})

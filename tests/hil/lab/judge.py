@@ -61,10 +61,16 @@ class BusLog:
         times = (f.time_s for f in self.frames if f.name.startswith("LOC_") and f.time_s > time_s)
         return next(times, None)
 
-    def longest_silence_s(self, after_s: float) -> float:
-        """Returns the longest gap between two frames of the localizer that ends after `after_s`."""
+    def longest_silence_s(self, after_s: float, end_s: float) -> float:
+        """Returns the longest silence of the localizer that ends after `after_s`.
+
+        A silence may last until `end_s`, the end of the log. Without a frame before `after_s`, its
+        begin is unknown, and it counts as infinite.
+        """
         times = [f.time_s for f in self.frames if f.name.startswith("LOC_")]
-        gaps = (b - a for a, b in zip(times, times[1:]) if b > after_s)
+        if not times or times[0] > after_s:
+            return math.inf
+        gaps = (b - a for a, b in zip(times, [*times[1:], end_s]) if b > after_s)
         return max(gaps, default=math.inf)
 
     def first_status(self, after_s: float, **wanted: str) -> float | None:

@@ -2,6 +2,10 @@
 
 import dataclasses
 
+from training import markdown
+
+HEADER = ("scenario", "injected", "seen", "recovery", "")
+
 
 @dataclasses.dataclass(frozen=True)
 class Outcome:
@@ -13,12 +17,15 @@ class Outcome:
 
 def table(outcomes: dict[str, Outcome]) -> str:
     """Returns the outcomes as a Markdown table."""
-    rows = ["| scenario | injected | seen | recovery | |", "|---|---|---|---|---|"]
-    rows += [row(name, outcome) for name, outcome in outcomes.items()]
-    return "\n".join(rows)
+    rows = [cells_of(name, outcome) for name, outcome in outcomes.items()]
+    return markdown.table(HEADER, rows, text_columns=len(HEADER))
 
 
 def row(name: str, outcome: Outcome) -> str:
+    return markdown.row(cells_of(name, outcome))
+
+
+def cells_of(name: str, outcome: Outcome) -> list[str]:
     recovery = "-" if outcome.recovery_s is None else f"{outcome.recovery_s:.2f} s"
     verdict = "pass" if outcome.passed else "FAIL"
-    return f"| {name} | {outcome.injected} | {outcome.seen} | {recovery} | {verdict} |"
+    return [name, outcome.injected, outcome.seen, recovery, verdict]

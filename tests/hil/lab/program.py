@@ -21,8 +21,8 @@ def play(name: str, scenario: Callable[[], Outcome]) -> Outcome:
 def report(outcomes: dict[str, Outcome], results: pathlib.Path) -> int:
     """Prints the table, writes it to table.md, and returns the exit status."""
     text = table(outcomes)
-    (results / "table.md").write_text(text + "\n", encoding="utf-8")
-    print(text)
+    (results / "table.md").write_text(text, encoding="utf-8")
+    print(text, end="")
     return 0 if all(outcome.passed for outcome in outcomes.values()) else 1
 
 

@@ -33,9 +33,10 @@ def _restart(run: Run, signal: str, limit_s: float) -> Outcome:
     run.agent.check(f"kill -{signal[3:]} {pid}")
     ready_s = run.wait_restarted(restarts, timeout_s=600) - injected_s
     run.agent.check(f"sleep {SETTLE_S}")
+    end_s = run.wall_s()
     log = run.finish_log()
     sends_again = log.localizer_after(injected_s + ready_s) is not None
-    silence_s = log.longest_silence_s(injected_s) if sends_again else math.inf
+    silence_s = log.longest_silence_s(injected_s, end_s) if sends_again else math.inf
     return Outcome(
         injected=f"{signal} to the daemon (a start takes {start_s:.1f} s here)",
         seen=f"READY again after {ready_s:.2f} s, bus silent for {silence_s:.2f} s",

@@ -87,10 +87,19 @@ class BusLogTest(unittest.TestCase):
         times = [1.0, 1.5, 4.0, 4.25, 9.0]
         whys: list[dict[str, int]] = [{}, {"Why_CameraMissing": 1}, {}, {"Why_PoseStale": 1}, {}]
         log = self.read(*(f"({t}) vcan0 {self.status(2, **w)}" for t, w in zip(times, whys)))
-        self.assertEqual(log.longest_silence_s(1.2), 4.75)
-        self.assertEqual(self.read(f"(1.0) vcan0 {self.status(2)}").longest_silence_s(0), math.inf)
+        self.assertEqual(log.longest_silence_s(1.2, 9.5), 4.75)
         self.assertEqual(log.reasons(1.2, 4.5), ["Why_CameraMissing", "Why_PoseStale"])
         self.assertEqual(log.reasons(4.5, 9.5), [])
+
+    def test_counts_silence_until_the_end_of_the_log(self) -> None:
+        log = self.read(*(f"({t}) vcan0 {self.status(2)}" for t in (0.0, 1.0, 2.0)))
+        self.assertEqual(log.longest_silence_s(1.0, 6.0), 4.0)
+        self.assertEqual(log.longest_silence_s(1.0, 2.25), 1.0)
+
+    def test_finds_no_end_of_a_silence_whose_begin_is_unknown(self) -> None:
+        log = self.read(f"(1.0) vcan0 {self.status(2)}")
+        self.assertEqual(log.longest_silence_s(0.0, 2.0), math.inf)
+        self.assertEqual(self.read().longest_silence_s(0.0, 2.0), math.inf)
 
     def test_uses_only_poses_of_one_epoch_in_a_valid_state(self) -> None:
         pose = [f"(2.0) vcan0 {self.position(5, 1000)}", f"(2.0) vcan0 {self.heading(5, 9000)}"]

@@ -16,6 +16,7 @@ from tests.hil.vehicle_image.disk import Disk
 from tests.hil.vehicle_image.machine import Parts
 from tests.hil.vehicle_image.repository import Repositories
 from tests.hil.vehicle_image.scenarios import SCENARIOS
+from training.option_types import positive
 
 HERE = pathlib.Path("tests/hil/vehicle_image")
 # In the machine, /lab has the layout of the tree, because configurations use relative paths.
@@ -59,7 +60,7 @@ def _arguments() -> argparse.Namespace:
         default=pathlib.Path("build/packages/amd64-bookworm"),
         help="the folder with the packages of script/package",
     )
-    parser.add_argument("--cuts", type=int, default=100, help="number of power cuts")
+    parser.add_argument("--cuts", type=positive, default=100, help="number of power cuts")
     parser.add_argument("--seed", type=int, default=1, help="of the moments of the power cuts")
     parser.add_argument("--keep-disk", action="store_true", help="use the disk of the last run")
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(SCENARIOS))

@@ -10,12 +10,18 @@ _BROKEN_DAEMON = "#!/bin/sh\necho 'this daemon does not run' >&2\nexit 1\n"
 
 
 class Repositories:
-    """Makes a repository with a good and one with a bad version, and the key that signs both."""
+    """Makes repositories, and the key that signs them.
 
-    GOOD = "good"
+    The good version is in a folder whose name must be encoded in a URI. The daemon of the bad
+    version does not run. The incomplete repository lacks a package that its index names.
+    """
+
+    GOOD = "good one"
     BAD = "bad"
+    INCOMPLETE = "incomplete"
     GOOD_VERSION = "9.0.1"
     BAD_VERSION = "9.0.2"
+    INCOMPLETE_VERSION = "9.0.3"
 
     def __init__(self, packages: pathlib.Path, folder: pathlib.Path) -> None:
         self._packages = packages
@@ -30,6 +36,9 @@ class Repositories:
         self.key.write_bytes(self._gpg("--export", _SIGNER))
         self._make(self.GOOD, self.GOOD_VERSION, broken=False)
         self._make(self.BAD, self.BAD_VERSION, broken=True)
+        self._make(self.INCOMPLETE, self.INCOMPLETE_VERSION, broken=False)
+        for package in (self.folder / self.INCOMPLETE).glob("*.deb"):
+            package.unlink()
 
     def _make(self, name: str, version: str, broken: bool) -> None:
         repository = self.folder / name

@@ -3,6 +3,7 @@
 import pathlib
 import random
 import statistics
+import urllib.parse
 from collections.abc import Callable
 
 from tests.hil.lab.agent import GuestRestarted, LabError
@@ -12,10 +13,12 @@ from tests.hil.lab.judge import BusLog, Truth
 from tests.hil.lab.outcome import Outcome
 from tests.hil.vehicle_image.machine import Machine, Parts
 from tests.hil.vehicle_image.repository import Repositories
-from tests.hil.vehicle_image.stored import Stored, check_nothing_lost, read_stored
+from tests.hil.vehicle_image.stored import Stored, StoredFile, check_nothing_lost, read_stored
 
 DBC = pathlib.Path("can/bevloc.dbc")
 STARTS = 5
+# As many as the bad starts that end a trial.
+SHORT_STARTS = 3
 # Prints the processor's counter and the wall clock of the same moment. The counter is 0 at power on
 # and grows by 10^9 in one second of the guest's clock.
 _CLOCKS = """
@@ -27,10 +30,15 @@ _CLOCKS = """
 _TICKS_PER_S = 1e9
 _DRIVE_TIMEOUT_S = 900.0
 _DRIVE_ENDED = "[ $(systemctl show lab-vehicle --value -p ActiveState) = inactive ]"
-# Files that were there before this start.
+# Names of files that were there before this start.
 _SETTLED = """
     started=$(sed -n 's/^btime //p' /proc/stat)
-    cd /var/lib/bevloc && find . -type f ! -newermt @$started -printf '%s %P\\n'
+    cd /var/lib/bevloc && find . -type f ! -newermt @$started -printf '%P\\n'
+"""
+# What an update changes: the entries of the boot loader, and the file system of each root.
+_STATE = """
+    ls /efi/loader/entries
+    for root in a b; do blkid -p -s UUID -o value /dev/disk/by-partlabel/bevloc-$root || true; done
 """
 
 
@@ -63,16 +71,17 @@ def power_cuts(parts: Parts, cuts: int, seed: int) -> Outcome:
     before = read_stored(parts.disk)
     if not before.learned:
         raise LabError("calibration.yaml: found none, wanted what the daemon has learned")
-    settled: dict[str, int] = {}
+    settled: dict[str, StoredFile] = {}
     starts_s = []
     for index in range(cuts):
         cut_s = random_moment.uniform(0.0, 1.3 * usual_s)
         with Machine(parts, f"cut-{index}") as machine:
             machine.run_until(cut_s)
-        _check(parts, before, settled)
+        stored = _check(parts, before, settled)
         with Machine(parts, f"after-{index}") as machine:
             starts_s.append(machine.wait_for_tracking())
-            settled = _sizes(machine.agent.check(_SETTLED))
+            names = machine.agent.check(_SETTLED).splitlines()
+            settled = {name: stored.files[name] for name in names if name in stored.files}
             machine.run_until(starts_s[-1] + random_moment.uniform(0.0, 10.0))
         _check(parts, before, settled)
         usual_s = statistics.median(starts_s)
@@ -90,29 +99,26 @@ def power_cuts(parts: Parts, cuts: int, seed: int) -> Outcome:
 
 
 def update(parts: Parts, _: int, __: int) -> Outcome:
-    """A good version is kept; a version whose daemon does not run is replaced by the one before."""
-    seen = []
+    """A good version is kept, although the first starts of its trial end before the verdict.
+
+    A version whose daemon does not run is replaced by the one before.
+    """
     with Machine(parts, "update") as machine:
         machine.wait_for_tracking()
-        _mount_repositories(machine)
-        for name in (Repositories.GOOD, Repositories.BAD):
-            print(machine.agent.check(f"bevloc-update file:/run/repositories/{name}"), flush=True)
-            _refuse(machine, name, "waits for a restart")
-            machine.restart()
-            trials = _await_verdict(machine)
-            machine.wait_for_tracking()
-            root, version = machine.started_root(), _version(machine)
-            seen.append(f"{name}: root {root} with {version} after {trials} starts")
-            print(f"lab: {seen[-1]}", flush=True)
-            if root != "b" or version != Repositories.GOOD_VERSION:
-                raise LabError(f"{seen[-1]}, wanted root b with {Repositories.GOOD_VERSION}")
-            _mount_repositories(machine)
-            _refuse(machine, "none", "found no apt repository")
-            _refuse(machine, Repositories.GOOD, "found no packages that are newer")
+        _refuse_unreadable(machine)
+        _install(machine, Repositories.GOOD)
+    for index in range(SHORT_STARTS):
+        with Machine(parts, f"short-{index}") as machine:
+            _expect_trial(machine)
+    with Machine(parts, "verdicts") as machine:
+        seen = [_judge_trial(machine, Repositories.GOOD)]
+        _install(machine, Repositories.BAD)
+        machine.restart()
+        seen.append(_judge_trial(machine, Repositories.BAD))
         _refuse(machine, Repositories.BAD, f"{Repositories.BAD_VERSION} failed its trial")
     return Outcome(
-        injected="updates: a good one, it again, an unreadable one, one whose daemon does not run, "
-        "it again",
+        injected="updates: unreadable ones, a good one with "
+        f"{SHORT_STARTS} short starts, one whose daemon does not run, and each again",
         seen="; ".join(seen),
         recovery_s=None,
         passed=True,
@@ -166,24 +172,57 @@ def _judge_drive(machine: Machine) -> tuple[bool, str]:
     return judge_poses(truth.errors_of(_bus_log(machine).valid_poses(), drive_start.wall_s))
 
 
-def _check(parts: Parts, before: Stored, settled: dict[str, int]) -> None:
-    check_nothing_lost(before, read_stored(parts.disk), settled)
+def _check(parts: Parts, before: Stored, settled: dict[str, StoredFile]) -> Stored:
+    after = read_stored(parts.disk)
+    check_nothing_lost(before, after, settled)
+    return after
 
 
-def _sizes(listing: str) -> dict[str, int]:
-    lines = (line.split(maxsplit=1) for line in listing.splitlines())
-    return {name: int(size) for size, name in lines}
+def _uri(repository: str) -> str:
+    return f"file:/run/repositories/{urllib.parse.quote(repository)}"
+
+
+def _install(machine: Machine, repository: str) -> None:
+    _mount_repositories(machine)
+    print(machine.agent.check(f"bevloc-update {_uri(repository)}"), flush=True)
+    _refuse(machine, repository, "waits for a restart")
+
+
+def _expect_trial(machine: Machine) -> None:
+    """The new version has started, and nothing has been found about it yet."""
+    entries = machine.agent.check("ls /efi/loader/entries")
+    if (root := machine.started_root()) != "b" or "bevloc-b+" not in entries:
+        raise LabError(f"a short start: found root {root} and {entries}, wanted a trial of root b")
+
+
+def _judge_trial(machine: Machine, repository: str) -> str:
+    """After the trial of any version, the good one must run. Returns what was seen."""
+    trials = _await_verdict(machine)
+    machine.wait_for_tracking()
+    root, version = machine.started_root(), _version(machine)
+    seen = f"{repository}: root {root} with {version} after {trials} starts"
+    print(f"lab: {seen}", flush=True)
+    if root != "b" or version != Repositories.GOOD_VERSION:
+        raise LabError(f"{seen}, wanted root b with {Repositories.GOOD_VERSION}")
+    _refuse_unreadable(machine)
+    _refuse(machine, Repositories.GOOD, "found no packages that are newer")
+    return seen
+
+
+def _refuse_unreadable(machine: Machine) -> None:
+    _mount_repositories(machine)
+    _refuse(machine, "none", "found no apt repository")
+    _refuse(machine, Repositories.INCOMPLETE, "found packages that cannot be fetched")
 
 
 def _refuse(machine: Machine, repository: str, reason: str) -> None:
     """An update that must not be made is refused for this reason, and leaves all as it is."""
-    entries = "ls /efi/loader/entries"
-    before = machine.agent.check(entries)
-    reply = machine.agent.run(f"bevloc-update file:/run/repositories/{repository}")
+    before = machine.agent.check(_STATE)
+    reply = machine.agent.run(f"bevloc-update {_uri(repository)}")
     if reply.status == 0 or reason not in reply.output:
         raise LabError(f"bevloc-update {repository}: found '{reply.output}', wanted '{reason}'")
-    if (after := machine.agent.check(entries)) != before:
-        raise LabError(f"/efi/loader/entries: found {after} after a failure, wanted {before}")
+    if (after := machine.agent.check(_STATE)) != before:
+        raise LabError(f"bevloc-update {repository}: found {after} afterwards, wanted {before}")
 
 
 def _mount_repositories(machine: Machine) -> None:

@@ -84,7 +84,7 @@ class JudgePlan(unittest.TestCase):
         self.expect_accepted(_NEWER, "again")
 
     def test_refuses_a_version_that_waits_for_a_restart(self) -> None:
-        for name in ("bevloc-b+3.conf", "bevloc-b+2-1.conf"):
+        for name in ("bevloc-b+10.conf", "bevloc-b+9-1.conf"):
             with self.subTest(name):
                 self.put_entry(name, "9.0.2")
                 self.expect_refused("bevloc 9.0.2 is installed and waits for a restart", _NEWER)

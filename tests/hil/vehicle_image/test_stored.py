@@ -1,16 +1,21 @@
 """Tests the judge of the power cuts, and the commands that the lab reads from a page."""
 
+import contextlib
+import io
 import pathlib
 import unittest
+from unittest import mock
 
 from tests.hil.lab.agent import LabError
 from tests.hil.lab.bring_up import MOST_COMMANDS, PAGE, commands_of
-from tests.hil.vehicle_image.stored import Stored, check_nothing_lost
+from tests.hil.vehicle_image import __main__ as program
+from tests.hil.vehicle_image.stored import Stored, StoredFile, check_nothing_lost
 
+_SETTLED = {"recording/1.mcap": StoredFile(100, "56ef")}
 _BEFORE = Stored(
     root_a="12ab",
     config={"bevlocd.yaml": b"cameras: {}\n"},
-    sizes={"recording/1.mcap": 100, "recording/2.mcap": 50},
+    files={**_SETTLED, "recording/2.mcap": StoredFile(50, "78ab")},
     learned={"rig_crc32": 1, "errors": [0.0]},
 )
 
@@ -22,14 +27,18 @@ def _after(**changes: object) -> Stored:
 class CheckNothingLost(unittest.TestCase):
     def expect_lost(self, message: str, after: Stored) -> None:
         with self.assertRaisesRegex(LabError, message):
-            check_nothing_lost(_BEFORE, after, {"recording/1.mcap": 100})
+            check_nothing_lost(_BEFORE, after, _SETTLED)
 
     def test_accepts_new_files_and_new_values(self):
         after = _after(
-            sizes={"recording/1.mcap": 100, "recording/3.mcap": 7},
+            files={**_SETTLED, "recording/3.mcap": StoredFile(7, "9a0b")},
             learned={"rig_crc32": 1, "errors": [0.5]},
         )
-        check_nothing_lost(_BEFORE, after, {"recording/1.mcap": 100})
+        check_nothing_lost(_BEFORE, after, _SETTLED)
+
+    def test_accepts_a_file_that_has_grown(self):
+        after = _after(files={"recording/1.mcap": StoredFile(101, "9a0b")})
+        check_nothing_lost(_BEFORE, after, _SETTLED)
 
     def test_finds_a_root_that_was_written(self):
         self.expect_lost("root file system", _after(root_a="34cd"))
@@ -38,13 +47,31 @@ class CheckNothingLost(unittest.TestCase):
         self.expect_lost("/etc/bevloc", _after(config={"bevlocd.yaml": b""}))
 
     def test_finds_a_shorter_file(self):
-        self.expect_lost("found 99 bytes, wanted 100", _after(sizes={"recording/1.mcap": 99}))
+        after = _after(files={"recording/1.mcap": StoredFile(99, "56ef")})
+        self.expect_lost("found 99 bytes, wanted 100", after)
+
+    def test_finds_a_file_with_other_bytes(self):
+        after = _after(files={"recording/1.mcap": StoredFile(100, "9a0b")})
+        self.expect_lost("recording/1.mcap: found other bytes", after)
 
     def test_finds_a_missing_file(self):
-        self.expect_lost("found None bytes, wanted 100", _after(sizes={}))
+        self.expect_lost("found None bytes, wanted 100", _after(files={}))
 
     def test_finds_a_learned_calibration_that_is_gone(self):
         self.expect_lost("calibration.yaml", _after(learned={}))
+
+
+class Arguments(unittest.TestCase):
+    def test_refuse_no_cuts_at_all(self):
+        folders = [f"--{name}=x" for name in ("build", "pictures", "results", "work")]
+        said = io.StringIO()
+        with (
+            mock.patch("sys.argv", ["try-image", *folders, "--cuts", "0", "power-cuts"]),
+            contextlib.redirect_stderr(said),
+            self.assertRaises(SystemExit),
+        ):
+            program.main()
+        self.assertIn("found '0', wanted a whole number of at least 1", said.getvalue())
 
 
 class CommandsOfThePage(unittest.TestCase):
