@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <string>
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -128,35 +130,55 @@ TEST(RealTimeThreadsTest, LockstepAppliesNoRealtimeSettings) {
   EXPECT_EQ(report->realtime_refusals, 0);
 }
 
-/// The number of frames of the localizer in the log of a run.
-int localizer_frames_in(const std::filesystem::path& log) {
-  std::ifstream lines(log);
-  int count = 0;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.find(" 5") != std::string::npos) ++count;  // identifiers from 0x500 on
-  }
-  return count;
-}
+/// A drive in which some threads hang from the start.
+struct HangingDrive {
+  WhyMask why;  ///< at the end
+  DriveReport report;
+};
 
-TEST(RealTimeThreadsTest, HangingThreadsStandStillAndEndWithTheRun) {
+/// Drives until the watchdog has said for a second that these threads hang, at most for a minute.
+HangingDrive hanging_drive(sim::FaultKind kind, const std::string& threads) {
+  constexpr int kSecond = 10;  // calls
   const test::TemporaryFolder folder;
   DriveConfig config = endless_demo();
-  config.cameras.rate_hz = 10.0;
-  for (const sim::FaultKind kind : {sim::FaultKind::kHangCapture, sim::FaultKind::kHangVision,
-                                    sim::FaultKind::kHangCanIn, sim::FaultKind::kHangCanOut}) {
-    sim::Fault fault = sim::make_fault(kind);
-    fault.from_s =
-        -10.0;  // the devices open before the drive begins, on a busy machine long before
-    config.simulation->faults.push_back(fault);
-  }
-  int asked = 0;
-  const SimulatedRunOptions options = quiet_options(folder);
-  const auto report =
-      run_simulation(config, small_rig(config), options,
-                     [&asked](const firmware::ApplianceView&) { return ++asked > 15; });
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->frames.captured, 0U);
-  EXPECT_LE(localizer_frames_in(options.out / "can.log"), 100)
+  // The devices open before the drive begins, on a busy machine long before.
+  config.simulation->faults.push_back(sim::make_fault(kind, -10.0));
+  HangingDrive drive;
+  int calls = 0;
+  int hung_calls = 0;
+  const auto report = run_simulation(
+      config, small_rig(config), quiet_options(folder), [&](const firmware::ApplianceView& view) {
+        drive.why = view.why;
+        hung_calls = view.hung.find(threads) != std::string::npos ? hung_calls + 1 : 0;
+        return hung_calls == kSecond || ++calls == 60 * kSecond;
+      });
+  EXPECT_EQ(hung_calls, kSecond) << "these threads should hang: " << threads;
+  EXPECT_TRUE(report) << report.error().message;
+  if (report) drive.report = *report;
+  EXPECT_LT(drive.report.first_fix_s, 0.0) << "without these threads no pose is valid";
+  return drive;
+}
+
+TEST(HangingThreadsTest, CamerasStandStillAndEndWithTheRun) {
+  const HangingDrive drive = hanging_drive(
+      sim::FaultKind::kHangCapture, fmt::format("cam-{}", fmt::join(kCameraNames, ", cam-")));
+  EXPECT_EQ(drive.report.frames.captured, 0U);
+}
+
+TEST(HangingThreadsTest, VisionStandsStillAndEndsWithTheRun) {
+  const HangingDrive drive = hanging_drive(sim::FaultKind::kHangVision, "vision");
+  EXPECT_GT(drive.report.frames.captured, 0U);
+}
+
+TEST(HangingThreadsTest, ReceivingStandsStillAndEndsWithTheRun) {
+  const HangingDrive drive = hanging_drive(sim::FaultKind::kHangCanIn, "can-in");
+  EXPECT_TRUE(drive.why.has(Why::kOdometryMissing));
+  EXPECT_GT(drive.report.can_sent, 0U);
+}
+
+TEST(HangingThreadsTest, SendingStandsStillAndEndsWithTheRun) {
+  const HangingDrive drive = hanging_drive(sim::FaultKind::kHangCanOut, "can-out");
+  EXPECT_LE(drive.report.can_sent, 100U)
       << "the epoch that hung, and the sign-off; the daemon sends more than 1,000 in this time";
 }
 

@@ -1,5 +1,7 @@
 #include "firmware/health/health.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "can/publisher/solution_frames.h"
@@ -12,6 +14,19 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using test::healthy;
 using test::tracking;
+
+/// The standard deviation of the pose along one axis, and its limit.
+struct SigmaAxis {
+  double HealthInputs::*sigma;
+  double HealthLimits::*limit;
+};
+
+/// In the order of HealthLimits::alert_limit: longitudinal, lateral, yaw.
+constexpr std::array<SigmaAxis, 3> kSigmaAxes = {{
+    {&HealthInputs::longitudinal_sigma_m, &HealthLimits::longitudinal_sigma_m},
+    {&HealthInputs::lateral_sigma_m, &HealthLimits::lateral_sigma_m},
+    {&HealthInputs::yaw_sigma_rad, &HealthLimits::yaw_sigma_rad},
+}};
 
 TEST(HealthTest, CamerasOutOfStepDegrade) {
   Health health = tracking();
@@ -74,12 +89,19 @@ TEST(HealthTest, AValidPoseNeedsNoSigmaOfANewOne) {
 }
 
 TEST(HealthTest, AnUncertainPoseIsNeverTracked) {
-  Health health{HealthLimits()};
-  HealthInputs inputs = healthy();
-  inputs.lateral_sigma_m = HealthLimits().lateral_sigma_m + 0.01;
-  for (int i = 0; i < 5; ++i) health.update(inputs);
-  EXPECT_EQ(health.state(), HealthState::kAcquiring);
-  EXPECT_TRUE(health.why().has(Why::kPoseUncertain));
+  HealthLimits limits;
+  limits.alert_limit.setConstant(100.0);  // only the limits of the sigmas can refuse the pose
+  for (const auto& [sigma, limit] : kSigmaAxes) {
+    Health health(limits);
+    HealthInputs inputs = healthy();
+    inputs.*sigma = limits.*limit + 0.001;
+    for (int i = 0; i < 5; ++i) health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kAcquiring) << limits.*limit;
+    EXPECT_TRUE(health.why().has(Why::kPoseUncertain)) << limits.*limit;
+    inputs.*sigma = limits.*limit - 0.001;
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kTracking) << limits.*limit;
+  }
 }
 
 TEST(HealthTest, AMissingCameraDegradesUntilItReturns) {
@@ -188,11 +210,18 @@ TEST(HealthTest, WrongOdometryAndClockGapsLose) {
 }
 
 TEST(HealthTest, AnUncertainPoseIsLost) {
-  Health health = tracking();
-  HealthInputs inputs = healthy();
-  inputs.longitudinal_sigma_m = HealthLimits().longitudinal_sigma_m + 0.01;
-  health.update(inputs);
-  EXPECT_EQ(health.state(), HealthState::kLost);
+  const HealthLimits limits;
+  for (const auto& [sigma, limit] : kSigmaAxes) {
+    Health health = tracking();
+    HealthInputs inputs = healthy();
+    inputs.*sigma = limits.*limit - 0.001;
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kTracking) << limits.*limit;
+    inputs.*sigma = limits.*limit + 0.001;
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kLost) << limits.*limit;
+    EXPECT_TRUE(health.why().has(Why::kPoseUncertain)) << limits.*limit;
+  }
 }
 
 TEST(HealthTest, WithoutOdometryThePoseIsLost) {
@@ -273,18 +302,26 @@ TEST(HealthTest, NamesTheReasonsInWords) {
 }
 
 TEST(HealthTest, ANewPoseMustBeWellWithinTheAlertLimits) {
-  Health health{HealthLimits()};
-  HealthInputs inputs = healthy();
-  inputs.longitudinal_sigma_m = 0.4;  // good enough to keep a pose
-  health.update(inputs);
-  health.update(inputs);
-  EXPECT_EQ(health.state(), HealthState::kAcquiring);
-  inputs.longitudinal_sigma_m = 0.3;
-  health.update(inputs);
-  EXPECT_EQ(health.state(), HealthState::kTracking);
-  inputs.longitudinal_sigma_m = 0.4;
-  health.update(inputs);
-  EXPECT_EQ(health.state(), HealthState::kTracking);
+  const HealthLimits limits;
+  for (size_t axis = 0; axis < kSigmaAxes.size(); ++axis) {
+    const auto& [sigma, limit] = kSigmaAxes[axis];
+    const double alert_limit = limits.alert_limit(static_cast<Eigen::Index>(axis));
+    const double wide = 0.26 * alert_limit;
+    ASSERT_LT(wide, limits.*limit) << "good enough to keep a pose, axis " << axis;
+    Health health(limits);
+    HealthInputs inputs = healthy();
+    inputs.*sigma = wide;
+    health.update(inputs);
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kAcquiring) << "axis " << axis;
+    EXPECT_EQ(health.why(), WhyMask(Why::kPoseUncertain)) << "axis " << axis;
+    inputs.*sigma = 0.24 * alert_limit;
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kTracking) << "axis " << axis;
+    inputs.*sigma = wide;
+    health.update(inputs);
+    EXPECT_EQ(health.state(), HealthState::kTracking) << "axis " << axis;
+  }
 }
 
 TEST(HealthTest, WrongTimeStampsLoseThePoseAndAreNamed) {

@@ -96,6 +96,13 @@ class EstimationStageTest : public testing::Test {
     reports_.push(report);
   }
 
+  /// The latest prediction; the queue is empty then.
+  std::optional<firmware::Prediction> take_prediction() {
+    std::optional<firmware::Prediction> latest;
+    while (auto next = predictions_.pop(Duration::zero())) latest = next;
+    return latest;
+  }
+
   uint64_t corrections(TrackerUpdate outcome) const {
     return stage_.counters().corrections[static_cast<size_t>(outcome)];
   }

@@ -1,5 +1,8 @@
 #include "firmware/stages/estimation_stage.h"
 
+#include <array>
+
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "can/messages/localizer_messages.h"
@@ -31,14 +34,51 @@ TEST_F(EstimationStageTest, SendsNoPoseBeforeVisionConfirmsIt) {
 TEST_F(EstimationStageTest, PredictsForVisionAndRequestsAWideSearchUntilTracking) {
   vision_ = false;
   run(milliseconds(1000));
-  std::optional<Prediction> prediction;
-  while (auto next = predictions_.pop(Duration::zero())) prediction = next;
+  std::optional<Prediction> prediction = take_prediction();
   ASSERT_TRUE(prediction);
   EXPECT_TRUE(prediction->acquiring);
   vision_ = true;
   run(milliseconds(5000));
-  while (auto next = predictions_.pop(Duration::zero())) prediction = next;
+  prediction = take_prediction();
+  ASSERT_TRUE(prediction);
   EXPECT_FALSE(prediction->acquiring);
+}
+
+TEST_F(EstimationStageTest, ReportsTheCovarianceAlongTheAxesOfTheMap) {
+  winding_ = true;
+  std::optional<can::PoseReport> report;
+  stage_.observe_reports([&report](const can::PoseReport& sent) { report = sent; });
+  run(milliseconds(5000));
+  const auto prediction = take_prediction();
+  ASSERT_TRUE(report);
+  ASSERT_TRUE(prediction);
+  const double yaw_rad = report->map_from_vehicle.yaw_rad;
+  EXPECT_NEAR(yaw_rad, 1.2, 0.1);
+  const Eigen::Matrix3d map_from_vehicle =
+      Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d in_vehicle =
+      map_from_vehicle.transpose() * report->covariance * map_from_vehicle;
+  const Eigen::Matrix3d& wanted = prediction->pose.covariance;
+  EXPECT_TRUE(in_vehicle.isApprox(wanted, 1e-9)) << in_vehicle << "\n\n" << wanted;
+  EXPECT_FALSE(report->covariance.isApprox(wanted, 0.01)) << "equal errors along and across";
+}
+
+TEST_F(EstimationStageTest, ReportsTheProtectionLevelOfEachAxis) {
+  std::optional<can::PoseReport> report;
+  stage_.observe_reports([&report](const can::PoseReport& sent) { report = sent; });
+  run(milliseconds(5000));
+  ASSERT_TRUE(report);
+  const can::ProtectionLevel& sent = report->protection_level;
+  const std::array<double, 3> levels = {sent.longitudinal_m, sent.lateral_m, sent.yaw_rad};
+  const PoseSnapshot pose = stage_.counters().pose.load();
+  EXPECT_EQ(levels, pose.protection_level);
+  EXPECT_EQ(sent.integrity_risk, ProtectionParameters().integrity_risk);
+  for (size_t axis = 0; axis < levels.size(); ++axis) {
+    // While GNSS agrees, the level is the quantile of a normal error (protection_level()).
+    EXPECT_NEAR(levels[axis] / pose.sigma[axis], 4.417 * ProtectionParameters().tail_factor, 0.02)
+        << "axis " << axis;
+  }
+  EXPECT_GT(levels[0], 1.05 * levels[1]) << "the errors along and across must differ";
 }
 
 TEST(EstimationStage, SendsTheFarthestPlacesOfAMap) {

@@ -57,7 +57,7 @@ class FrameReader {
     can::Frame frame = can::blank_frame(message, {});
     const size_t header = can::header_length(message.format);
     source.fill(frame.data.data() + header, frame.length - header);
-    frame.data[1] = static_cast<uint8_t>(choice >> 4U);  // the epoch, in the upper half
+    frame.data[1] = choice & 0xF0U;  // the epoch; protect() writes the lower half
     senders_[index].protect(frame);
     return frame;
   }

@@ -20,14 +20,26 @@ struct Ride {
   double scale = 1.01;
   double heading_noise_rad = radians(0.12);
   double duration_s = 120.0;
+  bool silent_in_bends = false;  ///< in each bend, odometry is missing for 1.5 s
 };
 
-/// Bends of 4 s, one every 12 s, to the left and to the right in turn.
+/// The time since the beginning of the latest bend. One begins every 12 s.
+double since_bend_s(double time_s) {
+  return std::fmod(time_s, 12.0);
+}
+
+/// Bends of 4 s to the left and to the right in turn.
 double yaw_rate_at(const Ride& ride, double time_s) {
-  const double in_period = std::fmod(time_s, 12.0);
+  const double in_bend_s = since_bend_s(time_s);
   const double side = std::fmod(time_s, 24.0) < 12.0 ? 1.0 : -1.0;
-  return in_period < 4.0 ? side * ride.bend_radps * std::pow(std::sin(M_PI * in_period / 4.0), 2)
+  return in_bend_s < 4.0 ? side * ride.bend_radps * std::pow(std::sin(M_PI * in_bend_s / 4.0), 2)
                          : 0.0;
+}
+
+/// Whether odometry sends no yaw rate.
+bool is_silent_at(const Ride& ride, double time_s) {
+  const double in_bend_s = since_bend_s(time_s);
+  return ride.silent_in_bends && in_bend_s >= 1.0 && in_bend_s < 2.5;
 }
 
 StampMonitor after(const Ride& ride, unsigned seed = 1) {
@@ -42,7 +54,7 @@ StampMonitor after(const Ride& ride, unsigned seed = 1) {
     const double time_s = 1e-3 * ms;
     heading_rad += 1e-3 * yaw_rate_at(ride, time_s);
     headings.push_back(heading_rad);
-    if (ms % 20 == 0) {
+    if (ms % 20 == 0 && !is_silent_at(ride, time_s)) {
       monitor.add_rate(
           Time(from_seconds(time_s)),
           ride.scale * yaw_rate_at(ride, time_s) + ride.bias_radps + radians(0.1) * normal(random));
@@ -84,14 +96,16 @@ TEST(StampMonitorTest, StampsThatAreRightAgainAfterTenMinutesAgreeWithinTwo) {
   const StampMonitor monitor =
       after({.offset_s = 0.1, .right_after_s = 600.0, .duration_s = 720.0});
   EXPECT_FALSE(monitor.contradicts());
+  EXPECT_EQ(monitor.contradicting_ms(), 0);
 }
 
-TEST(StampMonitorTest, TellsTheOffsetOfTheContradictionUntilItEnds) {
+TEST(StampMonitorTest, TellsTheOffsetWhileItContradicts) {
   for (double duration_s = 30.0; duration_s < 60.0; duration_s += 1.0) {
     const StampMonitor monitor = after({.offset_s = 0.1, .duration_s = duration_s});
-    if (!monitor.contradicts()) continue;
+    ASSERT_TRUE(monitor.contradicts()) << duration_s;
     ASSERT_TRUE(monitor.estimate()) << duration_s;
     EXPECT_NEAR(to_seconds(monitor.estimate()->offset), 0.1, 0.04) << duration_s;
+    EXPECT_NEAR(monitor.contradicting_ms(), 100, 40) << duration_s;
   }
 }
 
@@ -113,16 +127,13 @@ TEST(StampMonitorTest, AStraightRoadSaysNothing) {
   EXPECT_FALSE(monitor.contradicts());
 }
 
+/// The yaw rates on both sides of a gap do not tell how far the vehicle turned in it. A monitor
+/// that integrates across the gaps of this ride finds an offset of -0.08 s.
 TEST(StampMonitorTest, AGapOfTheRatesBeginsAnew) {
-  StampMonitor monitor(std::chrono::milliseconds(30));
-  for (int ms = 0; ms < 3000; ms += 20) {
-    monitor.add_rate(Time(std::chrono::milliseconds(ms)), 0.2);
-  }
-  monitor.add_rate(Time(std::chrono::milliseconds(9000)), 0.2);
-  for (int ms = 1000; ms < 9000; ms += 100) {
-    monitor.add_heading(Time(std::chrono::milliseconds(ms)), 0.0);
-  }
-  EXPECT_FALSE(monitor.estimate());
+  const StampMonitor monitor = after({.silent_in_bends = true});
+  ASSERT_TRUE(monitor.estimate());
+  EXPECT_NEAR(to_seconds(monitor.estimate()->offset), 0.0, 0.03);
+  EXPECT_FALSE(monitor.contradicts());
 }
 
 }  // namespace

@@ -11,22 +11,30 @@ const Eigen::Vector3d kSigma{0.2, 0.1, radians(0.2)};
 const Eigen::Vector3d kGnssSigma{1.0, 1.0, radians(1.0)};
 
 TEST(ProtectionLevelTest, IsTheQuantileOfANormalErrorWhileGnssAgrees) {
-  ProtectionParameters parameters;
-  parameters.tail_factor = 1.0;
-  const Eigen::Vector3d level =
-      protection_level(kSigma, GnssView{Eigen::Vector3d::Zero(), kGnssSigma}, 40.0, parameters);
-  // Two-sided quantile of the standard normal distribution at 1e-5, from a table.
-  EXPECT_NEAR(level.x() / kSigma.x(), 4.417, 0.01);
-  EXPECT_NEAR(level.y() / kSigma.y(), 4.417, 0.01);
-  EXPECT_NEAR(level.z() / kSigma.z(), 4.417, 0.01);
+  for (const double tail_factor : {1.0, ProtectionParameters().tail_factor, 1.5}) {
+    ProtectionParameters parameters;
+    parameters.tail_factor = tail_factor;
+    const Eigen::Vector3d level =
+        protection_level(kSigma, GnssView{Eigen::Vector3d::Zero(), kGnssSigma}, 40.0, parameters);
+    for (int axis = 0; axis < 3; ++axis) {
+      // Two-sided quantile of the standard normal distribution at 1e-5, from a table.
+      EXPECT_NEAR(level(axis) / kSigma(axis), 4.417 * tail_factor, 0.01) << "axis " << axis;
+    }
+  }
 }
 
 TEST(ProtectionLevelTest, GrowsWhereGnssPointsElsewhere) {
-  const auto level_at = [](double error) {
-    return protection_level(kSigma, GnssView{{0.0, error, 0.0}, kGnssSigma}, 40.0, {}).y();
-  };
-  EXPECT_NEAR(level_at(2.0), level_at(0.0), 0.05);
-  EXPECT_GT(level_at(4.4), 3.0) << "GNSS says 4.4 m to the side";
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto level_at = [axis](double error) {
+      const Eigen::Vector3d errors = error * Eigen::Vector3d::Unit(axis);
+      const Eigen::Vector3d level =
+          protection_level(kSigma, GnssView{errors, kGnssSigma}, 40.0, {});
+      return level(axis) / kGnssSigma(axis);
+    };
+    EXPECT_NEAR(level_at(2.0), level_at(0.0), 0.05) << "axis " << axis;
+    EXPECT_GT(level_at(4.4), 3.0) << "axis " << axis << ", GNSS says 4.4 sigmas elsewhere";
+    EXPECT_NEAR(level_at(-4.4), level_at(4.4), 0.01) << "axis " << axis;
+  }
 }
 
 /// The error of the heading is then that of the start, and says nothing about this moment.

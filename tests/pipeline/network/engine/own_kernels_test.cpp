@@ -85,6 +85,7 @@ class OwnKernels : public ::testing::TestWithParam<std::string> {
     double squares = 0.0;
     for (size_t i = 0; i < a.size(); ++i) {
       const double difference = std::abs(static_cast<double>(a[i]) - b[i]);
+      ASSERT_TRUE(std::isfinite(difference)) << i;
       largest = std::max(largest, difference);
       sum += difference;
       same += difference <= kSameSteps * step ? 1.0 : 0.0;

@@ -1,5 +1,7 @@
 #include "pipeline/network/kernels/direct_convolution.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/pipeline/network/kernels/random_layer.h"
@@ -126,6 +128,14 @@ INSTANTIATE_TEST_SUITE_P(
                   .residual = kF32,
                   .relu = false}),
     [](const auto& layer) { return layer.param.what; });
+
+TEST(RandomLayerTest, AnElementThatIsNotFiniteIsAnInfiniteError) {
+  const RandomLayer layer({.what = "", .input = {1, 8, 6, 9}, .channels = 8, .output_type = kF32});
+  auto elements = layer.run(*kernel_sets().back());
+  EXPECT_LE(layer.largest_error(elements), 1.0e-4);
+  std::fill_n(elements.begin(), sizeof(float), std::byte{0xFF});  // not a number
+  EXPECT_GT(layer.largest_error(elements), 1.0e9);
+}
 
 TEST(DirectConvolution, KernelSetsAgreeForEveryWidth) {
   for (const int64_t channels : {8, 16, 24}) {

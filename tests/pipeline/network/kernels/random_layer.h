@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <ostream>
 #include <random>
 #include <vector>
@@ -138,7 +139,8 @@ class RandomLayer {
     return (case_.relu ? std::max(real, 0.0) : real) / output_.scale;
   }
 
-  /// The largest difference from exact(), saturated to the range of the output type.
+  /// The largest difference from exact(), saturated to the range of the output type. Infinite if an
+  /// element is not finite.
   double largest_error(const std::vector<std::byte>& elements) const {
     const double lowest = output_.type == kU8 ? 0.0 : -128.0;
     const double highest = output_.type == kU8 ? 255.0 : 127.0;
@@ -150,7 +152,9 @@ class RandomLayer {
             double wanted = exact(n, c, row, col);
             if (output_.type != kF32) wanted = std::clamp(wanted, lowest, highest);
             const size_t i = place(output_, nn::ChannelOrder::kLast, n, c, row, col);
-            largest = std::max(largest, std::abs(element(elements, output_.type, i) - wanted));
+            const double error = std::abs(element(elements, output_.type, i) - wanted);
+            if (!std::isfinite(error)) return std::numeric_limits<double>::infinity();
+            largest = std::max(largest, error);
           }
         }
       }
