@@ -29,8 +29,8 @@ struct HealthLimits {
   double longitudinal_sigma_m = 0.70;
   double lateral_sigma_m = 0.30;
   double yaw_sigma_rad = radians(0.75);
-  /// A pose with a larger error is dangerous: (longitudinal m, lateral m, yaw rad), the alert
-  /// limits of a freeway. A new pose becomes valid only if its error is well within them. A pose is
+  /// The alert limits of a freeway (longitudinal m, lateral m, yaw rad): a larger error is
+  /// dangerous. A new pose becomes valid only if its error is well within them. A pose is
   /// lost if its lateral or heading protection level exceeds them and the latest confirming
   /// correction is older than 3 s. The age is compared with 2 s in the first 5 s of a pose. While
   /// match or GNSS is excluded, it is compared with `correction_timeout` if that is shorter.
@@ -62,7 +62,7 @@ struct HealthInputs {
   bool foreign_sender = false;        ///< a foreign sender was noticed (can::VehicleFaultTimes)
   bool start_confirmed = true;        ///< matches and GNSS suffice to trust a new pose
   bool clock_gap = false;             ///< time has jumped
-  bool calibration_fault = false;     ///< a camera is not where the calibration has it
+  bool calibration_fault = false;     ///< a camera is not where the calibration says
   bool overloaded = false;            ///< framesets were skipped for the latest one
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;

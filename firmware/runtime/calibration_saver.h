@@ -30,8 +30,8 @@ class CalibrationSaver {
   /// driving, does not wear a flash memory out.
   static constexpr Duration kPeriod = std::chrono::minutes(1);
 
-  /// What `online` knows now counts as written. `online` must outlive the saver. `rig_crc32` is the
-  /// checksum of the rig to which the errors belong.
+  /// The present estimate of `online` counts as saved. `online` must outlive the saver. `rig_crc32`
+  /// is the checksum of the rig to which the errors belong.
   CalibrationSaver(const OnlineCalibration& online, uint32_t rig_crc32, std::filesystem::path file);
 
   /// Makes the stage call note() after each match. Call it before the first step of the stage.

@@ -18,7 +18,7 @@ namespace bevloc::firmware {
 
 class Appliance;
 
-/// Judges one heartbeat by the times at which it is looked at. One thread.
+/// Judges one heartbeat by the time of its latest change. One thread.
 class HeartbeatWatch {
  public:
   /// `heartbeat` must outlive this.

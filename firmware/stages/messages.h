@@ -21,7 +21,7 @@ struct VisionReport {
   /// Whether a pose was known at frame_time. If not, nothing was matched.
   bool had_prior = false;
   bool map_nearby = false;       ///< the map has elements around the prior
-  CameraMask calibration_fault;  ///< cameras that are not where the calibration has them
+  CameraMask calibration_fault;  ///< cameras that are not where the calibration says
   bool unsynchronized = false;   ///< the cameras do not expose together (Synchrony)
   /// Whether the time stamps of most cameras have jumped (drivers::StampSteps).
   bool stamps_jumped = false;

@@ -57,7 +57,7 @@ struct VisionCounters {
   std::atomic<unsigned> stamps_jumped{0};
   std::atomic<uint64_t> checks{0};         ///< checks of network and solvers (Localizer::check())
   std::atomic<bool> network_fault{false};  ///< one of them failed; stays true until the restart
-  /// Cameras that are not where the calibration has them, a CameraMask.
+  /// Cameras that are not where the calibration says, a CameraMask.
   std::atomic<unsigned> calibration_fault{0};
 };
 

@@ -63,7 +63,7 @@ const char* advice_for(Why why) {
     case Why::kMapFault:
       return "GNSS and map lie apart: check the map's origin and its age.";
     case Why::kCalibrationFault:
-      return "A camera is not where the calibration has it, or the time stamps are wrong; the log "
+      return "A camera is not where the calibration says, or the time stamps are wrong; the log "
              "says which: check its mount or the clocks.";
     case Why::kNetworkFault:
       return "The network computes wrong results: restart; if the reason returns, replace the "

@@ -33,7 +33,7 @@ void ViewLog::note(const ApplianceView& view, Time now) {
   note_map_offset(view.map_offset_cm);
   note_cameras(
       before_.calibration_fault, view.calibration_fault,
-      "out of place, it is not where the calibration has it",
+      "out of place, it is not where the calibration says",
       "check its mount and whether it is connected in another camera's place, then calibrate");
   before_ = view;
 }

@@ -51,7 +51,7 @@ struct CameraImages {
 
 enum class SearchRange : uint8_t { kTracking, kAcquiring };
 
-/// The paper's network and its solver (Fig. 2), for one rig and one map. Owns all buffers: after a
+/// The network and its solvers for one rig and one map (paper, Fig. 2). Owns all buffers: after a
 /// warm-up localize() allocates nothing, for any set of cameras and exposure times. One thread. The
 /// map index must outlive it.
 class Localizer {

@@ -1,5 +1,5 @@
 // Online calibration: learns the errors of the cameras' extrinsics while driving, and says when a
-// camera is not where the calibration has it.
+// camera is not where the calibration says.
 #pragma once
 
 #include <optional>

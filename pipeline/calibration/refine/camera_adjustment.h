@@ -1,4 +1,4 @@
-// What a recording changes about a camera's calibration.
+// The changes of a camera that refine_rig() estimates.
 #pragma once
 
 #include <array>

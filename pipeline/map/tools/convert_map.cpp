@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/option_checks.h"
-#include "common/output_check.h"
+#include "common/output_file.h"
 #include "pipeline/map/map_binary.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/map/map_summary.h"
