@@ -121,13 +121,14 @@ void EstimationStage::take_samples() {
   while (const auto sample = samples_.pop(Duration::zero())) {
     const auto* odometry = std::get_if<OdometrySample>(&*sample);
     const bool is_odometry = odometry != nullptr;
-    if (is_odometry) {
+    if (!is_odometry) gnss_lag_.add(std::get<GnssSample>(*sample));
+    const TrackerUpdate outcome = estimator_.add(*sample);
+    // The yaw rate of a sample that the estimator refuses is wrong. If more are refused, the
+    // monitors see a gap and begin anew.
+    if (is_odometry && outcome == TrackerUpdate::kAccepted) {
       stamps_.add_rate(odometry->time, odometry->yaw_rate_radps);
       gnss_lag_.add_rate(odometry->time, odometry->yaw_rate_radps);
-    } else {
-      gnss_lag_.add(std::get<GnssSample>(*sample));
     }
-    const TrackerUpdate outcome = estimator_.add(*sample);
     ++(is_odometry ? counters_.odometry : counters_.gnss)[index_of(outcome)];
     // A GNSS sample counts as arrived even if the gate refuses it, or if it waits for a heading or
     // for odometry.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "firmware/threads/clock_gap.h"
+
 namespace bevloc::firmware {
 
 FramesetSource::FramesetSource(const drivers::SynchronizerConfig& config, bool compensates,
@@ -26,7 +28,7 @@ void FramesetSource::look_at_clock(const drivers::Clock& clock) {
   const Duration suspended = clock.suspended();
   if (latest_look_) {
     // While the machine is suspended, the clock stands still.
-    const bool was_suspended = suspended - suspended_ > kGap;
+    const bool was_suspended = suspended - suspended_ > ClockGapDetector::kSuspension;
     if (was_suspended || now - *latest_look_ > kGap) {
       ++counters_.clock_gaps;
       synchronizer_.forget_until(was_suspended ? now : *latest_look_);

@@ -31,8 +31,9 @@ struct NewestFrameset {
 /// frames_of() are readable from any thread.
 class FramesetSource {
  public:
-  /// If the machine was suspended for longer than this, or the thread hung for longer between two
-  /// looks at the clock, the earlier frames are forgotten, because the vehicle may be elsewhere.
+  /// If the thread hung for longer than this between two looks at the clock, or the machine was
+  /// suspended (ClockGapDetector::kSuspension), the earlier frames are forgotten, because the
+  /// vehicle may be elsewhere.
   static constexpr Duration kGap = std::chrono::seconds(1);
 
   /// `compensates` says whether the matching corrects for the motion between the frames of a

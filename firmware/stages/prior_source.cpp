@@ -1,5 +1,6 @@
 #include "firmware/stages/prior_source.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace bevloc::firmware {
@@ -21,13 +22,22 @@ std::optional<Prior> PriorSource::at(const drivers::Frameset& frameset) {
 }
 
 std::optional<DrivenStep> PriorSource::step_until(Time time) {
-  // PoseTrail uses the rates at the middle time, which suffices for two neighbouring framesets.
-  constexpr Duration kFarthest = std::chrono::milliseconds(150);
+  // PoseTrail uses the rates at the middle time, which suffices for a part of this length.
+  constexpr Duration kLongestPart = std::chrono::milliseconds(150);
+  constexpr Duration kFarthest = 3 * kLongestPart;
   const std::optional<Time> from = std::exchange(previous_time_, time);
   if (!from || time < *from || time - *from > kFarthest) return std::nullopt;
-  const auto motion = trail_.motion(*from, time);
-  if (!motion) return std::nullopt;
-  return DrivenStep{*from, time, *motion};
+  const Duration whole = time - *from;
+  const auto parts =
+      std::max<Duration::rep>((whole + kLongestPart - Duration(1)) / kLongestPart, 1);
+  DrivenStep step{*from, time, {}};
+  for (Duration::rep part = 0; part < parts; ++part) {
+    const auto motion =
+        trail_.motion(*from + whole * part / parts, *from + whole * (part + 1) / parts);
+    if (!motion) return std::nullopt;
+    step.motion = step.motion * *motion;
+  }
+  return step;
 }
 
 std::optional<CameraMotions> PriorSource::motions_in(const drivers::Frameset& frameset) const {

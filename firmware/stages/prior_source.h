@@ -18,7 +18,8 @@ struct Prior {
   CameraMotions reference_from_exposure{};
   double speed_mps = 0.0;  ///< negative when reversing
   SearchRange range = SearchRange::kAcquiring;
-  /// The motion since the frameset of the previous call of at(), if it is known.
+  /// The motion since the frameset of the previous call of at(), if it is known. Framesets that lie
+  /// more than 450 ms apart have none.
   std::optional<DrivenStep> driven{};
 };
 

@@ -91,6 +91,7 @@ void StampMonitor::add_heading(Time time, double heading_rad) {
 }
 
 void StampMonitor::fit(const Heading& before, const Heading& now) {
+  if (now.time - before.time > kLongestLag) return;
   const double change_radps = now.yaw_rate_radps - before.yaw_rate_radps;
   if (std::abs(change_radps) < kTurning_radps) return;
   const double change_rad = now.difference_rad - before.difference_rad;

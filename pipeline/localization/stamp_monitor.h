@@ -63,6 +63,9 @@ class StampMonitor {
   static constexpr size_t kRates = 128;
   static constexpr Duration kGap = std::chrono::milliseconds(100);
   static constexpr Duration kLag = std::chrono::seconds(2);
+  /// If headings are missing for longer than this, the ones before and after are not compared,
+  /// because the errors of the yaw rate add up meanwhile.
+  static constexpr Duration kLongestLag = 2 * kLag;
   /// A heading that follows the latest one sooner than this is not used. So the headings of one lag
   /// fit into `headings_`.
   static constexpr Duration kSpacing = std::chrono::milliseconds(32);

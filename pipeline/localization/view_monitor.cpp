@@ -181,11 +181,17 @@ float ViewMonitor::typical(int row, Tiles Camera::*values) {
   return *middle;
 }
 
+int ViewMonitor::moving_rows() const {
+  return static_cast<int>(std::count_if(typical_movement_.end() - kJudgedRows,
+                                        typical_movement_.end(),
+                                        [](float movement) { return movement >= kLeastMovement; }));
+}
+
 int ViewMonitor::covered_tiles(const Camera& camera) const {
   int covered = 0;
   for (int col = 0; col < kCols; ++col) {
     bool own_vehicle = true;
-    for (int row = kRows - 1; row > 0; --row) {
+    for (int row = kRows - 1; row >= kRows - kJudgedRows; --row) {
       const int tile = row * kCols + col;
       const bool is_shown = camera.shown[static_cast<size_t>(tile)];
       const bool is_covered = is_shown && typical_movement_[row] >= kLeastMovement &&
@@ -203,10 +209,12 @@ void ViewMonitor::judge() {
     typical_movement_[row] = typical(row, &Camera::movement);
     typical_contrast_[row] = typical(row, &Camera::contrast);
   }
+  const bool scene_moves = 2 * moving_rows() >= kJudgedRows;
   for (Camera& camera : cameras_) {
     if (camera.moved_images < kImages) continue;
     const int covered = covered_tiles(camera);
-    camera.dirty = covered >= kDirtyTiles || (camera.dirty && covered > kCleanTiles);
+    const bool stays_dirty = camera.dirty && (covered > kCleanTiles || !scene_moves);
+    camera.dirty = covered >= kDirtyTiles || stays_dirty;
   }
 }
 

@@ -28,7 +28,8 @@ enum class ViewFault : uint8_t {
 ///   hardly moves and has hardly any contrast, compared with the tiles of all cameras in the same
 ///   row. Only the pattern counts, because the brightness of dirt changes with the scene. Up to two
 ///   covered tiles at the lower edge of each column show the own vehicle, and the uppermost row
-///   shows mostly sky. Neither counts.
+///   shows mostly sky. Neither counts. A dirty camera stays dirty while the scene hardly moves in
+///   most rows, because such a scene hides the dirt.
 ///
 /// Six cameras take about 40 us. Allocates nothing. One thread.
 class ViewMonitor {
@@ -57,6 +58,7 @@ class ViewMonitor {
   static constexpr int kBlocksPerTile = 4;  ///< per side
   static constexpr int kRows = kNetworkHeightPx / (kBlock * kBlocksPerTile);
   static constexpr int kCols = kNetworkWidthPx / (kBlock * kBlocksPerTile);
+  static constexpr int kJudgedRows = kRows - 1;  ///< all but the uppermost
   static constexpr int kBlockRows = kRows * kBlocksPerTile;
   static constexpr int kBlockCols = kCols * kBlocksPerTile;
 
@@ -83,6 +85,8 @@ class ViewMonitor {
   static void note_movement(Camera& camera);
   /// The median of a row over the cameras that have driven long enough, or 0 if there are none.
   float typical(int row, Tiles Camera::*values);
+  /// The number of judged rows in which the scene moves enough to show dirt.
+  int moving_rows() const;
   int covered_tiles(const Camera& camera) const;
 
   std::array<Camera, kCameraCount> cameras_;

@@ -25,6 +25,10 @@ constexpr double kStep_m = 0.005;
 /// at once.
 constexpr double kFastest_radps = radians(0.005);
 constexpr double kFastest_mps = 0.0004;
+/// One change of the used errors is at most this many times the step, however long there was
+/// nothing to follow. Observations come up to 1 s apart, so a change is up to 1.17 times the step
+/// anyway.
+constexpr double kMostSteps = 1.2;
 
 /// A camera is at fault if an error is beyond its bound by more than this many sigmas.
 constexpr double kSigmasBeyond = 0.5;
@@ -82,7 +86,9 @@ void OnlineCalibration::learn_heading(const CalibrationObservation& observation,
     matched = observation.map_from_vehicle;
     matched->yaw_rad += filter_.turn_by(used_);  // the heading without the used errors
   }
-  const auto turn = direction_.add(matched, observation.driven);
+  // A pose that is found again may lie elsewhere than the lost one, so the stretch must end.
+  const auto driven = observation.tracking ? observation.driven : std::nullopt;
+  const auto turn = direction_.add(matched, driven);
   if (turn) filter_.update_heading(*turn);
 }
 
@@ -124,10 +130,12 @@ bool OnlineCalibration::follow_estimate() {
   bool moved = false;
   for (int error = 0; error < kExtrinsicErrors; ++error) {
     const bool is_rotation = error % kErrorsPerCamera < 3;
-    const double reach = unfollowed_s_ * (is_rotation ? kFastest_radps : kFastest_mps);
+    const double step = is_rotation ? kStep_rad : kStep_m;
+    const double reach =
+        std::min(unfollowed_s_ * (is_rotation ? kFastest_radps : kFastest_mps), kMostSteps * step);
     wanted(error) = std::clamp(wanted(error), -limit_of(error), limit_of(error));
     wanted(error) = std::clamp(wanted(error), used_(error) - reach, used_(error) + reach);
-    moved |= std::abs(wanted(error) - used_(error)) > (is_rotation ? kStep_rad : kStep_m);
+    moved |= std::abs(wanted(error) - used_(error)) > step;
   }
   if (!moved) return false;
   used_ = wanted;

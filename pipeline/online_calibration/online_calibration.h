@@ -31,8 +31,10 @@ struct CalibrationObservation {
   Time time;              ///< time of the frameset
   bool tracking = false;  ///< the prior came from the tracker, which follows the map
   bool driving = false;
-  Se2 map_from_vehicle;                ///< the matched pose
-  std::optional<DrivenStep> driven{};  ///< motion until `time` from odometry, if known
+  Se2 map_from_vehicle;  ///< the matched pose
+  /// Motion from odometry since the previous frameset until `time`, if known. The comparison with
+  /// the matched headings begins again where it is not known, and where the pose is not tracked.
+  std::optional<DrivenStep> driven{};
 };
 
 /// Learns only while the vehicle drives and tracks, from clear matches near the prior, with all

@@ -32,21 +32,21 @@ double repeats_after(double distance_m, double length_m) {
 
 }  // namespace
 
-void MatchRepetition::discount(Time time, const MeasuredMotion& motion,
+void MatchRepetition::discount(Time time, double speed_mps, bool stands,
                                const ErrorCorrelation& correlation, PoseMeasurement& match) {
-  const double distance_m = latest_ ? std::abs(motion.speed_mps * to_seconds(time - *latest_))
+  const double distance_m = latest_ ? std::abs(speed_mps * to_seconds(time - *latest_))
                                     : std::numeric_limits<double>::infinity();
   const Eigen::Vector3d repeats = correlation.match_m.unaryExpr(
       [distance_m](double length_m) { return repeats_after(distance_m, length_m); });
   const Eigen::Vector3d factor =
       kExcess.cwiseProduct(Eigen::Vector3d::Ones() + kCorrelation.cwiseProduct(repeats));
   match.repeated_variance = match.uncommon_variance.cwiseProduct(factor - Eigen::Vector3d::Ones());
-  match.repeated_variance += repeats_of_noise(distance_m, motion) * match.covariance.diagonal();
+  match.repeated_variance += repeats_of_noise(distance_m, stands) * match.covariance.diagonal();
   latest_ = time;
 }
 
-double MatchRepetition::repeats_of_noise(double distance_m, const MeasuredMotion& motion) {
-  standing_matches_ = stands(motion) ? std::min(standing_matches_ + 1, kMostRepeats) : 0;
+double MatchRepetition::repeats_of_noise(double distance_m, bool stands) {
+  standing_matches_ = stands ? std::min(standing_matches_ + 1, kMostRepeats) : 0;
   if (standing_matches_ > 1) return square_of(standing_matches_ - 1);
   return repeats_after(distance_m, kNoiseLength_m);
 }

@@ -24,16 +24,18 @@ namespace bevloc {
 class MatchRepetition {
  public:
   /// Sets the `repeated_variance` of a match that the filter is about to use, and remembers it.
-  void discount(Time time, const MeasuredMotion& motion, const ErrorCorrelation& correlation,
+  /// `stands` says whether the vehicle stands (FilterState::stands).
+  void discount(Time time, double speed_mps, bool stands, const ErrorCorrelation& correlation,
                 PoseMeasurement& match);
 
-  /// Makes the next match repeat nothing, because the pose is new or its covariance was raised.
+  /// Makes the next match repeat nothing, because the pose is new or its covariance was raised, or
+  /// because odometry was missing.
   void forget() { *this = {}; }
 
  private:
   /// How many times its own noise is added to a match that is `distance_m` from the latest one.
   /// Counts the matches of a standing vehicle.
-  double repeats_of_noise(double distance_m, const MeasuredMotion& motion);
+  double repeats_of_noise(double distance_m, bool stands);
 
   int standing_matches_ = 0;    ///< number since the vehicle stands
   std::optional<Time> latest_;  ///< time of the latest match that the filter has used

@@ -21,14 +21,10 @@ struct MeasuredMotion {
 
 /// The noise of standing wheels stays below this speed.
 inline constexpr double kStandingSpeed_mps = 0.1;
-/// The bias of a yaw rate sensor stays below this rate.
+/// The bias of a yaw rate sensor stays within this rate of its estimate.
 inline constexpr double kStandingYawRate_radps = radians(0.5);
-
-/// Whether the vehicle stands. It does not turn then, so its heading does not change.
-inline bool stands(const MeasuredMotion& motion) {
-  return std::abs(motion.speed_mps) < kStandingSpeed_mps &&
-         std::abs(motion.yaw_rate_radps) < kStandingYawRate_radps;
-}
+/// In a longer step without odometry, a vehicle that stands at both ends may have moved and turned.
+inline constexpr double kLongestStandstillStep_s = 0.5;
 
 /// The state that the filter estimates, with its covariance.
 ///
@@ -65,6 +61,11 @@ struct FilterState {
   }
   double yaw_rate_radps(const MeasuredMotion& motion) const {
     return stands(motion) ? 0.0 : motion.yaw_rate_radps - yaw_rate_bias_radps;
+  }
+  /// Whether the vehicle stands. It does not turn then, so its heading does not change.
+  bool stands(const MeasuredMotion& motion) const {
+    return std::abs(motion.speed_mps) < kStandingSpeed_mps &&
+           std::abs(motion.yaw_rate_radps - yaw_rate_bias_radps) < kStandingYawRate_radps;
   }
 
   /// Adds an estimated error, in the order of Index, to the estimate.
@@ -110,7 +111,8 @@ inline double kept_share(double amount, double correlation) {
 }
 
 /// Predicts `state` forward by `duration_s` >= 0 with constant `motion`. A standing vehicle keeps
-/// its match error, so standing still adds no knowledge.
+/// its match error, so standing still adds no knowledge. It also keeps its heading and the sigma of
+/// the heading, except in a step longer than kLongestStandstillStep_s.
 void predict(const MeasuredMotion& motion, double duration_s, const MotionNoise& noise,
              const ErrorCorrelation& correlation, FilterState& state);
 

@@ -26,6 +26,9 @@ constexpr double kMostYawSigma_rad = radians(30.0);
 /// Refused matches in a row after which a pose that was never valid starts again.
 constexpr int kRefusalsToStartAgain = 5;
 constexpr Duration kMatchAbsence = std::chrono::seconds(1);
+/// While the vehicle is slower, map and GNSS are not compared. An error of GNSS by reflections
+/// lasts as long as the vehicle stands, so it looks like an offset of the map.
+constexpr double kComparing_mps = 1.0;
 /// While the pose is not valid, the support of its matches counts for this long after the latest
 /// match. After that, the vehicle may be in another lane.
 constexpr Duration kSupportLifetime = std::chrono::seconds(5);
@@ -97,12 +100,13 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
   return update;
 }
 
-/// Uses only a pose with recent matches, because only such a pose has the same offset as the map.
+/// Uses only a pose with recent matches, because only such a pose has the same offset as the map,
+/// and only while the vehicle drives.
 void PoseEstimator::compare_map(const GnssSample& sample) {
   const bool matched = match_passed_ && sample.time - *match_passed_ <= kMatchAbsence;
   if (!matched || !(pose_valid_ || map_offset_.contradicts())) return;
   const auto pose = tracker_.pose_at(sample.time);
-  if (!pose) return;
+  if (!pose || std::abs(pose->speed_mps) < kComparing_mps) return;
   const GnssPose gnss = gnss_pose(sample);
   map_offset_.add(sample.time,
                   gnss.map_from_vehicle.translation() - pose->map_from_vehicle.translation(),

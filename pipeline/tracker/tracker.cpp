@@ -79,6 +79,8 @@ std::optional<TrackerUpdate> Tracker::refusal_of(const OdometrySample& sample) c
 
 TrackerUpdate Tracker::add_odometry(const OdometrySample& sample) {
   if (const auto refusal = refusal_of(sample)) return *refusal;
+  // After a gap the vehicle may be elsewhere, so the next match is new knowledge.
+  if (!has_odometry_for(sample.time)) repetition_.forget();
   last_odometry_ = sample;
   if (!is_initialised()) start_heading_.add(sample);
   if (!is_initialised() || sample.time < history_.front().time) return TrackerUpdate::kAccepted;
@@ -207,12 +209,14 @@ TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust tr
   if (events_until == 0) return TrackerUpdate::kTooOld;
   const MeasuredMotion motion = motion_at(time, events_until);
   const bool is_match = measurement.source == PoseSource::kMatch;
-  const bool passes = passes_gate(state_at(time, events_until), trust, measurement);
-  latest_innovation_.repeats = is_match && stands(motion);
+  const FilterState state = state_at(time, events_until);
+  const bool passes = passes_gate(state, trust, measurement);
+  latest_innovation_.repeats = is_match && state.stands(motion);
   if (!passes) return TrackerUpdate::kGated;
   if (trust == Trust::kExamine) return TrackerUpdate::kAccepted;
   if (is_match) {
-    repetition_.discount(time, motion, parameters_.correlation, measurement);
+    repetition_.discount(time, motion.speed_mps, state.stands(motion), parameters_.correlation,
+                         measurement);
   }
   insert(events_until, {.time = time,
                         .kind = TrackerEvent::Kind::kPose,

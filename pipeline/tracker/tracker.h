@@ -52,8 +52,9 @@ struct TrackerParameters {
 
   double history_s = 2.0;          ///< a measurement may arrive this late
   size_t history_capacity = 1024;  ///< events in `history_s`: odometry, GNSS, corrections; > 1
-  double max_prediction_s = 0.5;   ///< prediction beyond the last odometry sample
-  double max_speed_mps = 80.0;     ///< a faster odometry sample is implausible
+  /// Prediction beyond the last odometry sample.
+  double max_prediction_s = kLongestStandstillStep_s;
+  double max_speed_mps = 80.0;  ///< a faster odometry sample is implausible
   double max_yaw_rate_radps = 3.0;
   double max_position_m = 1e6;  ///< per axis, from the map's origin; for GNSS samples
 

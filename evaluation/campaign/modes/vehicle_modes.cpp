@@ -111,6 +111,8 @@ std::vector<Mode> clock_modes() {
             fault(FaultKind::kClockGap, {.gap_s = 3.0}), Why::kClockGap);
   modes.add("machine-suspended", "the machine is suspended for 3 s, which its clock does not show",
             kAtOnce, fault(FaultKind::kClockSuspend, {.gap_s = 3.0}), Why::kClockGap);
+  modes.add("machine-suspended-briefly", "the machine is suspended for 0.25 s", kAtOnce,
+            fault(FaultKind::kClockSuspend, {.gap_s = 0.25}), Why::kClockGap);
   return std::move(modes).all();
 }
 

@@ -54,6 +54,19 @@ TEST_F(EstimationStageTest, AClockGapMeansLostUntilThePoseIsFoundAgain) {
   EXPECT_FALSE(why().has(Why::kClockGap));
 }
 
+/// The steady clock stands still meanwhile, so odometry misses the 2.5 m that the vehicle drives.
+TEST_F(EstimationStageTest, AShortSuspensionIsAClockGap) {
+  run(milliseconds(5000));
+  ASSERT_EQ(stage_.counters().state, HealthState::kTracking);
+  suspended_ += milliseconds(250);
+  latest_.reset();
+  run(milliseconds(10));
+  EXPECT_EQ(stage_.counters().state, HealthState::kLost);
+  EXPECT_TRUE(why().has(Why::kClockGap));
+  EXPECT_EQ(stage_.counters().clock_gaps, 1U);
+  EXPECT_FALSE(latest_) << "no valid pose";
+}
+
 /// Only GNSS supports a new pose, and its sigma may be too small.
 TEST_F(EstimationStageTest, ThePoseAfterAClockGapIsNew) {
   run(milliseconds(5000));

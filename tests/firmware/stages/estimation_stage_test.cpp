@@ -1,6 +1,7 @@
 #include "firmware/stages/estimation_stage.h"
 
 #include <array>
+#include <cmath>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -261,6 +262,18 @@ TEST_F(EstimationStageTest, CallsTheObserverOncePerCorrectionThatWasSent) {
   run(milliseconds(5000));
   ASSERT_FALSE(sent.empty());
   for (size_t i = 1; i < sent.size(); ++i) EXPECT_GT(sent[i], sent[i - 1]);
+}
+
+/// Without matches, the arbiter does not exclude GNSS.
+TEST_F(EstimationStageTest, ARefusedYawRateDoesNotHideThatGnssIsTooOld) {
+  winding_ = true;
+  gnss_heading_age_s_ = 0.5;
+  vision_ = false;
+  run(std::chrono::milliseconds(1000));
+  const Time after_latest = now_ - std::chrono::milliseconds(10);
+  samples_.push(OdometrySample{after_latest, kSpeed_mps, std::nan("")});
+  run(std::chrono::milliseconds(30'000));
+  EXPECT_GT(stage_.counters().gnss_lag_ms, 0);
 }
 
 }  // namespace

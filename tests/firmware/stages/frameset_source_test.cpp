@@ -62,16 +62,19 @@ TEST_F(FramesetSourceTest, SkipsAndCountsOlderFramesets) {
 }
 
 TEST_F(FramesetSourceTest, ForgetsTheFramesFromBeforeASuspension) {
-  push_all_but_one(clock_.now() - milliseconds(20));
-  EXPECT_FALSE(next());
-  clock_.suspend(std::chrono::hours(8));
-  clock_.advance(milliseconds(50));  // longer than the frameset waits
-  EXPECT_FALSE(next());
-  EXPECT_EQ(source_->counters().clock_gaps, 1U);
-  push_frameset(clock_.now() + milliseconds(1));
-  clock_.advance(milliseconds(1));
-  EXPECT_TRUE(next());
-  EXPECT_EQ(source_->counters().clock_gaps, 1U);
+  for (const milliseconds suspension : {milliseconds(50), milliseconds(8 * 3'600'000)}) {
+    make({}, true);
+    push_all_but_one(clock_.now() - milliseconds(20));
+    EXPECT_FALSE(next());
+    clock_.suspend(suspension);
+    clock_.advance(milliseconds(50));  // longer than the frameset waits
+    EXPECT_FALSE(next());
+    EXPECT_EQ(source_->counters().clock_gaps, 1U);
+    push_frameset(clock_.now() + milliseconds(1));
+    clock_.advance(milliseconds(1));
+    EXPECT_TRUE(next());
+    EXPECT_EQ(source_->counters().clock_gaps, 1U);
+  }
 }
 
 TEST_F(FramesetSourceTest, AGapOfTheClockForgetsTheFramesFromBefore) {

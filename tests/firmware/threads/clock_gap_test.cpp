@@ -43,6 +43,27 @@ TEST_F(ClockGapTest, TheSteadyClockDoesNotShowASuspension) {
   EXPECT_FALSE(look());
 }
 
+/// At 30 m/s the vehicle drives 1.5 m in the shortest of these suspensions.
+TEST_F(ClockGapTest, AShortSuspensionIsAGapToo) {
+  look();
+  for (const milliseconds suspension : {milliseconds(50), milliseconds(250)}) {
+    clock_.suspend(suspension);
+    clock_.advance(milliseconds(10));
+    EXPECT_TRUE(look());
+    clock_.advance(milliseconds(10));
+    EXPECT_FALSE(look());
+  }
+}
+
+TEST_F(ClockGapTest, AnErrorOfReadingTheClocksIsNoGap) {
+  look();
+  for (const milliseconds error : {milliseconds(2), milliseconds(-2)}) {
+    clock_.suspend(error);
+    clock_.advance(milliseconds(10));
+    EXPECT_FALSE(look());
+  }
+}
+
 TEST_F(ClockGapTest, AMachineThatWasSuspendedBeforeHasNoGap) {
   clock_.suspend(std::chrono::hours(8));
   EXPECT_FALSE(look());

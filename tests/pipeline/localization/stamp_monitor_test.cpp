@@ -21,6 +21,9 @@ struct Ride {
   double heading_noise_rad = radians(0.12);
   double duration_s = 120.0;
   bool silent_in_bends = false;  ///< in each bend, odometry is missing for 1.5 s
+  /// From this time in a bend, odometry repeats its yaw rate for 5 s, and there are no headings for
+  /// 10 s.
+  double stuck_after_s = std::numeric_limits<double>::infinity();
 };
 
 /// The time since the beginning of the latest bend. One begins every 12 s.
@@ -49,16 +52,20 @@ StampMonitor after(const Ride& ride, unsigned seed = 1) {
   double heading_rad = 3.0;  // crosses 180 degrees
   double correlated_rad = 0.0;
   std::vector<double> headings;  // every millisecond
+  double rate_radps = 0.0;
   const int end_ms = static_cast<int>(1e3 * ride.duration_s);
   for (int ms = 0; ms < end_ms; ++ms) {
     const double time_s = 1e-3 * ms;
     heading_rad += 1e-3 * yaw_rate_at(ride, time_s);
     headings.push_back(heading_rad);
     if (ms % 20 == 0 && !is_silent_at(ride, time_s)) {
-      monitor.add_rate(
-          Time(from_seconds(time_s)),
-          ride.scale * yaw_rate_at(ride, time_s) + ride.bias_radps + radians(0.1) * normal(random));
+      if (time_s < ride.stuck_after_s || time_s > ride.stuck_after_s + 5.0) {
+        rate_radps = ride.scale * yaw_rate_at(ride, time_s) + ride.bias_radps +
+                     radians(0.1) * normal(random);
+      }
+      monitor.add_rate(Time(from_seconds(time_s)), rate_radps);
     }
+    if (time_s > ride.stuck_after_s && time_s < ride.stuck_after_s + 10.0) continue;
     // The report of a match comes 180 ms after its stamp, so that an exposure may be 100 ms later.
     if (ms % 100 == 80 && ms > 1000) {
       correlated_rad = 0.9 * correlated_rad + 0.44 * ride.heading_noise_rad * normal(random);
@@ -134,6 +141,12 @@ TEST(StampMonitorTest, AGapOfTheRatesBeginsAnew) {
   ASSERT_TRUE(monitor.estimate());
   EXPECT_NEAR(to_seconds(monitor.estimate()->offset), 0.0, 0.03);
   EXPECT_FALSE(monitor.contradicts());
+}
+
+/// The repeated yaw rates turn by almost 1 rad more than the vehicle.
+TEST(StampMonitorTest, HeadingsFarApartAreNotCompared) {
+  const StampMonitor monitor = after({.duration_s = 216.0, .stuck_after_s = 25.5});
+  EXPECT_TRUE(monitor.agrees());
 }
 
 }  // namespace

@@ -163,6 +163,20 @@ TEST_F(ViewMonitorTest, DirtDoesNotMoveWhileDriving) {
   EXPECT_TRUE(monitor_.with(ViewFault::kNone).all()) << "the lens was cleaned";
 }
 
+/// A scene that hardly moves, such as fog or a wall, says nothing about the lens.
+TEST_F(ViewMonitorTest, ADirtyCameraStaysDirtyWhileTheSceneHardlyMoves) {
+  const std::vector<Tiles> dirt{{2, 3, 2, 2}, {1, 11, 2, 2}};
+  for (int i = 0; i < 2 * ViewMonitor::kImages; ++i) drive_with(dirt);
+  expect_only(kDirty, ViewFault::kDirty);
+  for (int i = 0; i < 6 * ViewMonitor::kImages; ++i) {
+    for (int camera = 0; camera < kCameraCount; ++camera) fill(camera, kWhole, 100 + i % 3);
+    show(true);
+    ASSERT_EQ(monitor_.fault(kDirty), ViewFault::kDirty) << i;
+  }
+  for (int i = 0; i < 4 * ViewMonitor::kImages; ++i) drive_with({});
+  EXPECT_TRUE(monitor_.with(ViewFault::kNone).all()) << "the lens was cleaned";
+}
+
 TEST_F(ViewMonitorTest, LittleDirtIsTolerated) {
   for (int i = 0; i < 2 * ViewMonitor::kImages; ++i) drive_with({{2, 3, 2, 2}});
   EXPECT_TRUE(monitor_.with(ViewFault::kNone).all());

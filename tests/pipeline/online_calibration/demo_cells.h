@@ -104,12 +104,20 @@ class DemoCells {
     }
     bev_.assign(bev);
     standardise(bev_);
-    warp_all(bev_, Se2(), moved_.data(), kFeatureGrid.cols * bev_.lanes());
+    warp();
+  }
+
+  /// All features of the images are 0.
+  void show_nothing() {
+    bev_.assign(std::vector<float>(kChannels * static_cast<size_t>(kFeatureGrid.cells())));
+    warp();
   }
 
   MatchedCells match() const { return {moved_, map_, view_, rig_, Se2()}; }
 
  private:
+  void warp() { warp_all(bev_, Se2(), moved_.data(), kFeatureGrid.cols * bev_.lanes()); }
+
   Rig rig_;
   ViewTable view_;
   CellFeatures bev_;

@@ -23,6 +23,20 @@ TEST(OnlineCalibration, FollowsWhatItLearnedSlowly) {
   EXPECT_LE(degrees(driver.calibration().used_errors()(kErrorsPerCamera)), 0.1) << "in 20 s";
 }
 
+TEST(OnlineCalibration, FollowsSlowlyAlsoAfterALongTimeWithoutChanges) {
+  DemoDriver driver;
+  driver.drive_blank(6000);
+  ASSERT_EQ(driver.calibration().used_errors(), ExtrinsicErrors::Zero());
+  driver.drive(kSmallError, 100);
+  const ExtrinsicErrors moved = driver.calibration().used_errors().cwiseAbs();
+  EXPECT_GT(moved.maxCoeff(), 0.0);
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    const int first = camera * kErrorsPerCamera;
+    EXPECT_LT(degrees(moved.segment<3>(first).maxCoeff()), 0.1) << camera;
+    EXPECT_LT(moved.segment<3>(first + 3).maxCoeff(), 0.012) << camera;
+  }
+}
+
 TEST(OnlineCalibration, LearnsOnlyFromClearMatchesWhileItDrivesAndTracks) {
   const auto learned_with = [](auto change) {
     DemoDriver driver;
@@ -61,6 +75,23 @@ TEST(OnlineCalibration, LearnsTheTurnOfAllCamerasFromTheDirectionOfMotion) {
     turn_rad += (rig.cameras[camera].vehicle_from_camera.rotation * errors).z() / kCameraCount;
   }
   EXPECT_GT(degrees(turn_rad), 0.1);
+}
+
+/// The pose before the loss lies beside the one after it. A comparison across the loss would take
+/// this for a turn of all cameras.
+TEST(OnlineCalibration, LearnsNoHeadingAcrossALossOfThePose) {
+  const auto errors_after_loss = [](double beside_m) {
+    DemoDriver driver;
+    driver.beside_m = beside_m;
+    driver.drive(ExtrinsicErrors::Zero(), 25);
+    driver.tracking = false;
+    driver.drive(ExtrinsicErrors::Zero(), 15);
+    driver.tracking = true;
+    driver.beside_m = 0.0;
+    driver.drive(ExtrinsicErrors::Zero(), 30);
+    return driver.calibration().filter().errors();
+  };
+  EXPECT_EQ(errors_after_loss(1.0), errors_after_loss(0.0));
 }
 
 TEST(OnlineCalibration, RestoresWhatIsWithinTheBounds) {

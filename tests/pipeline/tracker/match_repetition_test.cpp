@@ -17,7 +17,8 @@ class MatchRepetitionTest : public testing::Test {
     PoseMeasurement match;
     match.covariance = Eigen::Vector3d(0.1, 0.2, 0.01).asDiagonal();
     match.uncommon_variance = {0.05, 0.1, 0.005};
-    repetition_.discount(at_s(time_s), motion, correlation_, match);
+    repetition_.discount(at_s(time_s), motion.speed_mps, FilterState().stands(motion), correlation_,
+                         match);
     return match.repeated_variance;
   }
 

@@ -1,6 +1,8 @@
 #include "pipeline/tracker/motion_model.h"
 
+#include <cmath>
 #include <random>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
@@ -41,6 +43,30 @@ TEST(MotionModelTest, ALongStepCoversABend) {
     }
     EXPECT_EQ(covariance.llt().info(), Eigen::Success);
   }
+}
+
+/// How far the heading sigma grows in a step in which the vehicle stands at both ends.
+double yaw_sigma_after(double duration_s) {
+  FilterState state;
+  state.covariance.setZero();
+  predict({0.0, radians(0.3)}, duration_s, {}, {}, state);
+  EXPECT_EQ(state.map_from_vehicle.yaw_rad, 0.0);
+  return std::sqrt(state.covariance(FilterState::kYaw, FilterState::kYaw));
+}
+
+TEST(MotionModelTest, AVehicleMayTurnInALongStepBetweenTwoStandstills) {
+  EXPECT_EQ(yaw_sigma_after(0.02), 0.0);
+  EXPECT_EQ(yaw_sigma_after(kLongestStandstillStep_s), 0.0);
+  EXPECT_GT(yaw_sigma_after(2.0 * kLongestStandstillStep_s), radians(5.0));
+}
+
+TEST(MotionModelTest, AVehicleWithAKnownBiasOfTheYawRateStands) {
+  FilterState state;
+  EXPECT_FALSE(state.stands({0.0, radians(0.8)}));
+  state.yaw_rate_bias_radps = radians(0.6);
+  EXPECT_TRUE(state.stands({0.0, radians(0.8)}));
+  EXPECT_EQ(state.yaw_rate_radps({0.0, radians(0.8)}), 0.0);
+  EXPECT_FALSE(state.stands({0.2, radians(0.8)}));
 }
 
 }  // namespace
