@@ -9,8 +9,8 @@
 namespace bevloc {
 
 /// Writes a new file beside `path`, flushes it to the disk and renames it over `path`. The new file
-/// has the mode of the earlier one, and its owner and group where this user may set them. Fails if
-/// `path` exists and is not a file.
+/// gets the mode of the earlier one. It also gets the owner and group, if this user may set them.
+/// Fails if `path` exists and is not a file.
 Status replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// Like replace_file(), but first keeps the earlier file under the first free name of PATH.bak,

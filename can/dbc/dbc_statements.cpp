@@ -137,9 +137,9 @@ void DbcReader::read_attribute() {
   take_sign(';');
 }
 
-/// Gives the named values of a good message the signs of their signals. A name of a value that the
-/// signal cannot have does no harm, except SNA: then nothing would show that the signal is not
-/// available.
+/// Gives the named values of a good message the signs of their signals. Leaves the message out if
+/// the signal cannot have the value named SNA, because nothing else shows that the signal is not
+/// available. Other names of such values do no harm.
 void DbcReader::complete_value_names(DbcMessage& message) const {
   for (DbcSignal& signal : message.signals) {
     if (!is_integer(signal.layout)) continue;

@@ -83,8 +83,8 @@ Se2 transfer(const MeasuredMatch& measured, const Se2& truth, const HypothesisGr
   return {correction[0], correction[1], correction[2]};
 }
 
-/// How little a match fits that was measured `framesets` away from a prior that was off by `had`,
-/// for a prior that is off by `wanted`.
+/// Says how badly a measured match fits a prior that is off by `wanted`. The match was measured
+/// `framesets` away, from a prior that was off by `had`.
 double cost_of(const Se2& had, size_t framesets, const Se2& wanted,
                const std::array<double, 3>& ranges) {
   const auto had_values = values_of(had);

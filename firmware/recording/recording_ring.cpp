@@ -207,14 +207,14 @@ uint64_t RecordingRing::missing_bytes() const {
 }
 
 Status RecordingRing::make_room(const fs::path& newest) const {
-  if (missing_bytes() == 0) return {};
+  uint64_t missing = missing_bytes();
+  if (missing == 0) return {};
   std::vector<Listed> files;
   for (const fs::path& folder : {config_.directory, config_.directory / kBlackBoxFolder}) {
     std::ranges::copy_if(
         list_recordings(folder / newest.filename()), std::back_inserter(files),
         [&](const Listed& file) { return file.path.filename() != newest.filename(); });
   }
-  uint64_t missing = missing_bytes();
   if (bytes_to_free(files) >= missing) {
     for (size_t i = 0; i < files.size() && missing > 0; ++i) {
       remove_file(files[i].path);

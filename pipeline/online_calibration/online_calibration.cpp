@@ -25,9 +25,8 @@ constexpr double kStep_m = 0.005;
 /// at once.
 constexpr double kFastest_radps = radians(0.005);
 constexpr double kFastest_mps = 0.0004;
-/// One change of the used errors is at most this many times the step, however long there was
-/// nothing to follow. Observations come up to 1 s apart, so a change is up to 1.17 times the step
-/// anyway.
+/// A single change of the used errors is at most this many steps, even after a long time without a
+/// change. Observations come up to 1 s apart, so a change may reach 1.17 steps without this limit.
 constexpr double kMostSteps = 1.2;
 
 /// A camera is at fault if an error is beyond its bound by more than this many sigmas.

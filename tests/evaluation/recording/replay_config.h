@@ -5,8 +5,8 @@
 
 namespace bevloc::test {
 
-/// Its cameras are the folders "pictures", its bus is a mock. Rig, map and model are those of this
-/// tree.
+/// A configuration that replays the folder "pictures" on a mock bus. It uses the rig, map and model
+/// of this tree.
 inline std::string replay_config_text() {
   const std::string source = BEVLOC_SOURCE_DIR;
   return "cameras: {driver: replay, recording: pictures}\ncalibration: {rig: " + source +
