@@ -15,13 +15,15 @@ struct bevloc_message {
   bool is_fd;     /* E2E profile P05, otherwise P02 */
   uint16_t cycle_ms;
   uint16_t data_id; /* of the E2E protection */
-  /* Where the content of the message, its bytes from 2 on, begins in LOC_Solution; 0: not in it.
-     There, add 8 * (fd_first_byte - 2) to the start bits of its signals. */
+  /* The byte of LOC_Solution at which the content of this message begins; 0 if LOC_Solution does
+     not contain it. The content is the message from its byte 2 on. In LOC_Solution, the start bit
+     of a signal is larger by 8 * (fd_first_byte - 2). */
   uint8_t fd_first_byte;
 };
 
-/* Intel byte order; physical = raw * scale + offset. With has_sna, all bits set (or the most
-   negative number of a signed signal) means that the signal is not available. */
+/* The byte order is Intel's, and the physical value is raw * scale + offset. If has_sna is true,
+   the raw value with all bits set (for a signed signal: the most negative number) means that the
+   signal is not available. */
 struct bevloc_signal {
   uint16_t start_bit;
   uint8_t length_bits;

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Signal(NamedTuple):
-    """Intel byte order; physical = raw * scale + offset."""
+    """The byte order is Intel's, and the physical value is raw * scale + offset."""
 
     start_bit: int
     length_bits: int
@@ -27,8 +27,9 @@ class Message(NamedTuple):
     is_fd: bool  # E2E profile P05, otherwise P02
     cycle_ms: int
     data_id: int
-    # Where the content of the message, its bytes from 2 on, begins in LOC_Solution; 0: not in it.
-    # There, add 8 * (fd_first_byte - 2) to the start bits of its signals.
+    # The byte of LOC_Solution at which the content of this message begins; 0 if LOC_Solution does
+    # not contain it. The content is the message from its byte 2 on. In LOC_Solution, the start bit
+    # of a signal is larger by 8 * (fd_first_byte - 2).
     fd_first_byte: int
     signals: dict[str, Signal]
 

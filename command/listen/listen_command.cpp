@@ -23,6 +23,14 @@ void note_interrupt(int) {
   interrupted = 1;
 }
 
+/// Lets Ctrl-C end the reading, also while no line comes. A second Ctrl-C ends the program.
+void watch_for_interrupt() {
+  struct sigaction action {};
+  action.sa_handler = note_interrupt;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // without SA_RESTART: a read returns
+  sigaction(SIGINT, &action, nullptr);
+}
+
 /// Prints which parts of a file are not decoded.
 void print_left_out(const can::Dbc& dbc) {
   for (const can::DbcMessage& message : dbc.messages) {
@@ -200,7 +208,7 @@ void ListenCommand::print_totals(const can::BusListener& listener) const {
 Status ListenCommand::run() {
   auto listener = make_listener();
   if (!listener) return tl::unexpected(listener.error());
-  std::signal(SIGINT, note_interrupt);
+  watch_for_interrupt();
   Status status;
   std::error_code error;  // such as a name that is too long for a file
   if (source_ == "-") {

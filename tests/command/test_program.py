@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 import unittest
@@ -19,6 +20,11 @@ PROGRAM = BIN / ("bevloc" if (BIN / "bevloc").exists() else "bevloc_vehicle")
 def run(*words: str, **options: str) -> subprocess.CompletedProcess[str]:
     command = [str(PROGRAM), *words]
     return subprocess.run(command, capture_output=True, text=True, cwd=options.get("cwd", ROOT))
+
+
+def state_of(pid: int) -> str:
+    """The state of a process as in proc(5), such as R for running and S for waiting."""
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(") ")[2][0]
 
 
 def leaves(*path: str) -> list[tuple[str, ...]]:
@@ -78,6 +84,21 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(ended.returncode, 2)
         self.assertIn(r"found '(1.0) can0 \x00\x1B[2J#00', wanted", ended.stderr)
         self.assertEqual(re.findall(r"[\x00-\x09\x0b-\x1f]", ended.stderr), [])
+
+    def test_an_interrupt_ends_listening_while_no_line_comes(self) -> None:
+        command = [str(PROGRAM), "listen", "-"]
+        pipe = subprocess.PIPE
+        with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as listening:
+            assert listening.stdin and listening.stdout
+            listening.stdin.write("(5.000000) can0 500#AD4481FF00007AD0\n")
+            listening.stdin.flush()
+            self.assertIn("State=ACQUIRING", listening.stdout.readline())
+            while state_of(listening.pid) != "S":  # it waits for the next line
+                pass
+            listening.send_signal(signal.SIGINT)
+            totals = listening.stdout.read()
+            self.assertEqual(listening.wait(), 0)
+        self.assertIn("frames of other messages", totals)
 
     def test_doctor_prints_json(self) -> None:
         answer = run("doctor", "--json")

@@ -96,6 +96,15 @@ Status decode_rest(const TileDirectory& directory, HdMap& map) {
   return {};
 }
 
+/// Whether the map has as many elements of each class as the file states.
+bool has_elements_of(const TiledMapFacts& facts, const HdMap& map) {
+  uint32_t found[kElementClasses] = {};
+  for (const MapElement& element : map.elements) {
+    ++found[static_cast<size_t>(element.element_class)];
+  }
+  return std::ranges::equal(found, facts.of_class);
+}
+
 /// The size in bytes of the name and the entries together.
 uint64_t directory_size(const TileHeader& header) {
   return header.name_size + uint64_t{header.tiles} * kTileEntrySize;
@@ -180,17 +189,21 @@ Result<TileDirectory> TileDirectory::open(std::string_view bytes, const std::str
 
 Status TileDirectory::check_entries(const TileHeader& header, const std::string& file) const {
   const uint64_t tiles_begin = kTileHeaderSize + directory_size(header);
-  for (size_t i = 0; i < size(); ++i) {
+  const auto fault_of = [&](size_t i) -> const char* {
     const Entry at = entry(i);
     const bool is_inside = at.offset >= tiles_begin && at.offset <= header.rest_offset &&
                            at.size <= header.rest_offset - at.offset;
-    const Entry before = i > 0 ? entry(i - 1) : at;
-    const bool is_sorted =
-        i == 0 || std::pair(before.row, before.column) < std::pair(at.row, at.column);
-    if (is_inside && is_sorted) continue;
+    if (!is_inside) return "beyond the tiles";
+    if (i == 0) return nullptr;
+    const Entry before = entry(i - 1);
+    if (std::pair(before.row, before.column) >= std::pair(at.row, at.column)) return "out of order";
+    return at.offset < before.offset + before.size ? "over the tile before it" : nullptr;
+  };
+  for (size_t i = 0; i < size(); ++i) {
+    const char* fault = fault_of(i);
+    if (fault == nullptr) continue;
     return fail("{}: byte {}: found entry {} of the directory {}", file,
-                kTileHeaderSize + header.name_size + i * kTileEntrySize, i,
-                is_inside ? "out of order" : "beyond the tiles");
+                kTileHeaderSize + header.name_size + i * kTileEntrySize, i, fault);
   }
   return {};
 }
@@ -248,6 +261,7 @@ Result<HdMap> decode_tiles(std::string_view bytes, const std::string& file) {
   if (Status status = decode_rest(*directory, map); !status) {
     return fail("{}: {}, wanted a valid compact map", file, status.error().message);
   }
+  if (!has_elements_of(facts, map)) return fail("{}: found other numbers of elements", file);
   if (const uint32_t found = map_checksum(map); found != facts.checksum) {
     return fail("{}: found checksum {:08x}, wanted {:08x} as the file states", file, found,
                 facts.checksum);

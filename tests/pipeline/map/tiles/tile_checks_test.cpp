@@ -143,6 +143,10 @@ TEST(TileChecks, AHeaderThatDoesNotFitTheFileIsRefused) {
         "found 1000 elements in"},
        {"the number of lanes", header([](TileHeader& h) { ++h.lanes; }),
         "found another number of lanes"},
+       {"the number of dividers", header([](TileHeader& h) {
+          --h.of_class[static_cast<size_t>(ElementClass::kLaneDivider)];
+        }),
+        "found other numbers of elements"},
        {"the checksum of the map", header([](TileHeader& h) { ++h.checksum; }), "found checksum"}});
 }
 
@@ -200,7 +204,13 @@ TEST(TileChecks, ADirectoryThatDoesNotFitTheTilesIsRefused) {
         [](std::string& bytes) {
           test::put_fixed(bytes, entry_place(bytes, 1) + test::kEntryColumn, uint32_t{0});
         },
-        kOrder}});
+        kOrder},
+       {"a tile over the tile before it",
+        [](std::string& bytes) {
+          test::put_fixed(bytes, entry_place(bytes, 1) + test::kEntryOffset,
+                          uint64_t{tile_place(bytes, 1) - 1});
+        },
+        "found entry 1 of the directory over the tile before it"}});
 }
 
 /// Pieces that no map can have. A tile with such a piece is damaged.
