@@ -48,14 +48,6 @@ void read_motion(const Json& report, GnssFix& fix) {
   fix.sigma_course_deg = std::max(0.0, number(report, "epd").value_or(0.0));
 }
 
-bool is_possible(const GnssFix& fix) {
-  const auto is_sigma = [](double sigma_m) { return sigma_m >= 0.0 && sigma_m < kMostSigma_m; };
-  const double speed_mps = fix.speed_mps.value_or(0.0);
-  return std::abs(fix.latitude_deg) <= 90.0 && std::abs(fix.longitude_deg) <= 180.0 &&
-         is_sigma(fix.sigma_east_m) && is_sigma(fix.sigma_north_m) && speed_mps >= 0.0 &&
-         speed_mps < kMostSpeed_mps;
-}
-
 std::optional<std::chrono::nanoseconds> read_time(const Json& report) {
   const auto time = report.find("time");
   const bool has_time = time != report.end() && time->is_string();
@@ -90,6 +82,16 @@ GpsdReport read_position(const Json& report) {
 }
 
 }  // namespace
+
+bool is_possible(const GnssFix& fix) {
+  const auto is_sigma = [](double sigma_m) { return sigma_m >= 0.0 && sigma_m < kMostSigma_m; };
+  const double speed_mps = fix.speed_mps.value_or(0.0);
+  const double course_deg = fix.course_deg.value_or(0.0);
+  return std::abs(fix.latitude_deg) <= 90.0 && std::abs(fix.longitude_deg) <= 180.0 &&
+         is_sigma(fix.sigma_east_m) && is_sigma(fix.sigma_north_m) && speed_mps >= 0.0 &&
+         speed_mps < kMostSpeed_mps && course_deg >= 0.0 && course_deg < 360.0 &&
+         fix.sigma_course_deg >= 0.0;
+}
 
 std::optional<std::chrono::nanoseconds> utc_of(std::string_view text) {
   int year = 0;

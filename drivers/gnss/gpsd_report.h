@@ -22,6 +22,9 @@ struct GnssFix {
   std::chrono::nanoseconds utc{};      ///< the moment of the position, as the time since 1970
 };
 
+/// Whether a receiver can report these values. They may be infinite or no numbers.
+bool is_possible(const GnssFix& fix);
+
 /// The kind of one line.
 enum class GpsdLine : uint8_t {
   kFix,

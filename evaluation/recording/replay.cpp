@@ -20,6 +20,18 @@ bool same(const PlayedFrame& a, const PlayedFrame& b) {
   return a.frame.frame == b.frame.frame && a.frame.received == b.frame.received;
 }
 
+/// Gives each position of gpsd to the appliance at the time when it got it in the drive. Positions
+/// are left out if the appliance takes those of the bus.
+firmware::Companion gpsd_of(const std::vector<firmware::RecordedFix>& fixes,
+                            firmware::GnssStage* gnss) {
+  const auto give = [&fixes, gnss, next = size_t{0}](Time now) mutable {
+    for (; gnss != nullptr && next < fixes.size() && fixes[next].time <= now; ++next) {
+      gnss->take(fixes[next].fix, fixes[next].held);
+    }
+  };
+  return {.next_due = {}, .act = give, .listen = [](Duration) {}};
+}
+
 }  // namespace
 
 Result<ReplayOutcome> replay(const ReplaySetup& setup, const ReplayInputs& inputs,
@@ -42,8 +54,9 @@ Result<ReplayOutcome> replay(const ReplaySetup& setup, const ReplayInputs& input
     if (report.map_from_vehicle.is_finite()) pose.map_from_vehicle = report.map_from_vehicle;
     outcome.poses.push_back(pose);
   });
+  const firmware::Companion gpsd = gpsd_of(inputs.fixes, (*appliance)->gnss());
   // The recorded run ended one cycle before its last frame, which says LOST.
-  firmware::run_lockstep(**appliance, clock, nullptr,
+  firmware::run_lockstep(**appliance, clock, &gpsd,
                          [&](Time now) { return now + kBusCycle < inputs.end; });
   outcome.framesets = (*appliance)->vision().counters().framesets;
   if (Status status = log->finish(); !status) return tl::unexpected(status.error());

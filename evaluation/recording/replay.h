@@ -27,6 +27,7 @@ struct ReplayInputs {
   Time begin;  ///< the virtual clock starts here
   Time end;    ///< the last frame on the bus
   std::vector<PlayedFrame> bus;
+  std::vector<firmware::RecordedFix> fixes;  ///< positions of gpsd, in the order of time
   std::function<std::vector<std::unique_ptr<drivers::Camera>>(drivers::Clock& clock)> cameras;
 };
 

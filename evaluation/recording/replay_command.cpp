@@ -7,6 +7,8 @@
 #include "common/json_dump.h"
 #include "common/option_checks.h"
 #include "common/output_file.h"
+#include "evaluation/recording/candump_inputs.h"
+#include "evaluation/recording/replay_inputs.h"
 #include "evaluation/recording/track.h"
 #include "firmware/recording/topics.h"
 

@@ -1,21 +1,14 @@
 #include "evaluation/recording/replay_setup.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
-#include <fstream>
-#include <set>
 
-#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include "can/bus/candump.h"
 #include "common/files.h"
 #include "common/sha256.h"
 #include "common/version.h"
-#include "drivers/camera/replay/replay_camera.h"
 #include "evaluation/drive/drive_config.h"
-#include "firmware/devices/can_bus.h"
 #include "firmware/recording/topics.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_checksum.h"
@@ -93,22 +86,20 @@ Status restore_learned(const Recording& recording, const ScratchFolder& scratch,
   return write_file(config.learned_calibration_file, learned->data);
 }
 
-/// Fails if the configuration takes positions from gpsd, because no recording holds them.
-Status prepare(const ReplayOverrides& overrides, firmware::Config& config) {
-  if (config.gnss) {
-    return fail(
-        "replay: found the section gnss, wanted GNSS on the bus; a recording holds no positions of "
-        "gpsd, so no pose would be found; if the bus has positions too, give --config with a "
-        "configuration without this section");
-  }
+/// Removes what a replay must not do, and applies the overrides.
+void prepare(const ReplayOverrides& overrides, firmware::Config& config) {
   config.record.reset();
   if (!overrides.model.empty()) config.model_file = overrides.model;
   if (config.can.secoc) {
     spdlog::warn("replay: leaves out the authentication, because a recording holds no key");
     config.can.secoc.reset();
   }
-  return {};
 }
+
+/// The end of the messages about positions of gpsd that are missing.
+constexpr const char* kWithoutGnss =
+    "no pose would be found; if the bus has positions too, give --config with a configuration "
+    "without this section";
 
 Result<HdMap> map_for(Recording& recording, const ReplayOverrides& overrides,
                       const firmware::Config& config) {
@@ -149,85 +140,6 @@ void warn_of_another_version(const Recording& recording) {
                recording.name(), recorded, version());
 }
 
-/// The log time of the first bus frame or image of the run. The head of the file does not count.
-uint64_t first_input_ns(const Recording& recording) {
-  uint64_t first = recording.end_ns();
-  const auto look_at = [&](std::string_view topic) {
-    const auto& places = recording.messages(topic);
-    if (!places.empty()) first = std::min(first, places.front().log_time_ns);
-  };
-  look_at(firmware::kBusInTopic);
-  look_at(firmware::kBusOutTopic);
-  for (int camera = 0; camera < kCameraCount; ++camera) look_at(firmware::image_topic(camera));
-  return first;
-}
-
-/// The appliance would refuse each image whose size is not that of the rig.
-Status check_image_sizes(Recording& recording, const Rig& rig) {
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    const auto& places = recording.messages(firmware::calibration_topic(camera));
-    if (places.empty()) continue;
-    const auto recorded = recording.read<foxglove::CameraCalibration>(places.front());
-    if (!recorded) return tl::unexpected(recorded.error());
-    const Intrinsics& lens = rig.cameras[camera].intrinsics;
-    if (static_cast<int>(recorded->width()) == lens.width_px &&
-        static_cast<int>(recorded->height()) == lens.height_px) {
-      continue;
-    }
-    return fail("{}: found images of {}x{} of the camera {}, wanted {}x{} as in the rig",
-                recording.name(), recorded->width(), recorded->height(), kCameraNames[camera],
-                lens.width_px, lens.height_px);
-  }
-  return {};
-}
-
-/// The line of an entry in a log. A log can have empty lines, which are no entries.
-std::string place_of_entry(const fs::path& log, size_t entry) {
-  std::ifstream lines(log);
-  std::string line;
-  int number = 0;
-  for (size_t entries = 0; entries <= entry && std::getline(lines, line); ++number) {
-    if (line != "" && line != "\r") ++entries;
-  }
-  return fmt::format("{}:{}", log.string(), number);
-}
-
-/// Refuses a log whose clock jumps, for example from 1970 to today, because its replay would take
-/// as long as the jump. Lines of several interfaces may be a little out of order.
-Status check_times(const std::vector<can::CandumpEntry>& entries, const fs::path& log) {
-  constexpr Duration kLongestGap = std::chrono::seconds(60);
-  constexpr Duration kFarthestBack = std::chrono::seconds(1);
-  for (size_t i = 1, newest = 0; i < entries.size(); ++i) {
-    const Duration step = entries[i].time - entries[newest].time;
-    if (step > kLongestGap) {
-      return fail(
-          "{}: found a time {:.1f} s after the line before, wanted at most {:g} s; the clock was "
-          "set or the log was paused, so cut the log there and replay one part",
-          place_of_entry(log, i), to_seconds(step), to_seconds(kLongestGap));
-    }
-    if (step < -kFarthestBack) {
-      return fail(
-          "{}: found a time {:.1f} s before that of an earlier line, wanted at most {:g} s; the "
-          "clock was set back or logs were joined, so cut the log there and replay one part",
-          place_of_entry(log, i), to_seconds(-step), to_seconds(kFarthestBack));
-    }
-    if (step > Duration::zero()) newest = i;
-  }
-  return {};
-}
-
-/// The interface of the vehicle's bus in a log: the configured one if the log has several. Fails if
-/// the log has several others.
-Result<std::string> interface_of(const std::vector<can::CandumpEntry>& entries,
-                                 const std::string& configured, const fs::path& log) {
-  std::set<std::string> interfaces;
-  for (const can::CandumpEntry& entry : entries) interfaces.insert(entry.interface);
-  if (interfaces.size() == 1) return *interfaces.begin();
-  if (interfaces.contains(configured)) return configured;
-  return fail("{}: found frames of {}, wanted those of can.interface ({}) or of one interface",
-              log.string(), fmt::join(interfaces, ", "), configured);
-}
-
 }  // namespace
 
 Result<ScratchFolder> ScratchFolder::create() {
@@ -257,8 +169,10 @@ Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overri
   if (Status status = restore_learned(recording, scratch, setup.config); !status) {
     return tl::unexpected(status.error());
   }
-  if (Status prepared = prepare(overrides, setup.config); !prepared) {
-    return tl::unexpected(prepared.error());
+  prepare(overrides, setup.config);
+  if (setup.config.gnss && recording.messages(firmware::kGnssTopic).empty()) {
+    return fail("{}: found no positions of gpsd, wanted some because of the section gnss; {}",
+                recording.name(), kWithoutGnss);
   }
   warn_of_another_version(recording);
   warn_of_another_model(recording, setup.config);
@@ -277,8 +191,12 @@ Result<ReplaySetup> setup_of(const ReplayOverrides& overrides) {
   ReplaySetup setup;
   setup.config = *config;
   setup.config.learned_calibration_file.clear();
-  if (Status prepared = prepare(overrides, setup.config); !prepared) {
-    return tl::unexpected(prepared.error());
+  prepare(overrides, setup.config);
+  if (setup.config.gnss) {
+    return fail(
+        "replay: found the section gnss, wanted GNSS on the bus; a candump log has no positions of "
+        "gpsd, so {}",
+        kWithoutGnss);
   }
   auto rig = read_rig(setup.config.rig_file);
   if (!rig) return tl::unexpected(rig.error());
@@ -292,86 +210,6 @@ Result<ReplaySetup> setup_of(const ReplayOverrides& overrides) {
   if (!map) return tl::unexpected(map.error());
   setup.map = std::move(*map);
   return setup;
-}
-
-Result<ReplayInputs> inputs_of(Recording& recording, const Rig& rig) {
-  if (Status same = check_image_sizes(recording, rig); !same) return tl::unexpected(same.error());
-  auto frames = played_frames(recording, firmware::kBusInTopic);
-  if (!frames) return tl::unexpected(frames.error());
-  const std::string text = recording.value(firmware::kStartKey);
-  int64_t start_ns = 0;
-  std::from_chars(text.data(), text.data() + text.size(), start_ns);
-  // A later file of a ring begins in the middle of the run: at one of its bus cycles.
-  constexpr Duration kCycle = std::chrono::milliseconds(10);
-  const Time start{Duration(start_ns)};
-  const Time first = recording.clock_time(first_input_ns(recording));
-  ReplayInputs inputs;
-  inputs.begin = first < start ? first : start + (first - start) / kCycle * kCycle;
-  inputs.end = recording.clock_time(recording.end_ns());
-  inputs.bus = std::move(*frames);
-  inputs.cameras = [&recording, &rig](drivers::Clock& clock) {
-    std::vector<std::unique_ptr<drivers::Camera>> cameras;
-    for (int camera = 0; camera < kCameraCount; ++camera) {
-      const Intrinsics& lens = rig.cameras[camera].intrinsics;
-      cameras.push_back(
-          std::make_unique<PlayedCamera>(recording, camera, lens.width_px, lens.height_px, clock));
-    }
-    return cameras;
-  };
-  return inputs;
-}
-
-Result<ReplayInputs> inputs_of_candump(const fs::path& log, const fs::path& images,
-                                       const ReplaySetup& setup) {
-  const auto entries = can::read_candump_file(log.string());
-  if (!entries) return tl::unexpected(entries.error());
-  if (Status status = check_times(*entries, log); !status) return tl::unexpected(status.error());
-  const auto interface = interface_of(*entries, setup.config.can.interface, log);
-  if (!interface) return tl::unexpected(interface.error());
-  const auto accepted = firmware::appliance_options(setup.config.can).accepted_ids;
-  ReplayInputs inputs;
-  for (const can::CandumpEntry& entry : *entries) {
-    const bool wanted = entry.kind == can::CandumpKind::kData && entry.interface == *interface &&
-                        std::ranges::find(accepted, entry.frame.id) != accepted.end();
-    if (wanted) inputs.bus.push_back({Time(entry.time), {entry.frame, Time(entry.time)}});
-  }
-  if (inputs.bus.empty()) {
-    return fail(
-        "{}: found none of the vehicle's messages, wanted odometry and GNSS with the "
-        "identifiers of the configuration",
-        log.string());
-  }
-  std::ranges::stable_sort(inputs.bus, {}, &PlayedFrame::delivered);
-  inputs.begin = inputs.bus.front().delivered;
-  inputs.end = inputs.bus.back().delivered;
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    const auto frames = drivers::load_recording(images / kCameraNames[camera]);
-    if (!frames) return tl::unexpected(frames.error());
-    if (frames->front().time > inputs.end || frames->back().time < inputs.begin) {
-      return fail(
-          "{}: found pictures from {:.1f} s to {:.1f} s, wanted times of the log, which "
-          "goes from {:.1f} s to {:.1f} s",
-          (images / kCameraNames[camera] / "frames.txt").string(),
-          to_seconds(frames->front().time.time_since_epoch()),
-          to_seconds(frames->back().time.time_since_epoch()),
-          to_seconds(inputs.begin.time_since_epoch()), to_seconds(inputs.end.time_since_epoch()));
-    }
-    inputs.begin = std::min(inputs.begin, frames->front().time);
-  }
-  inputs.cameras = [images, &setup](drivers::Clock& clock) {
-    std::vector<std::unique_ptr<drivers::Camera>> cameras;
-    for (int camera = 0; camera < kCameraCount; ++camera) {
-      drivers::ReplayCameraConfig played;
-      played.camera = camera;
-      played.directory = images / kCameraNames[camera];
-      played.width_px = setup.rig.cameras[camera].intrinsics.width_px;
-      played.height_px = setup.rig.cameras[camera].intrinsics.height_px;
-      played.buffers = setup.config.cameras.buffers;
-      cameras.push_back(std::make_unique<drivers::ReplayCamera>(played, clock));
-    }
-    return cameras;
-  };
-  return inputs;
 }
 
 }  // namespace bevloc::evaluation

@@ -33,25 +33,14 @@ class ScratchFolder {
 
 /// The configuration is the recorded one. Files that it names are taken from where they were if
 /// they are still the same, else from the recording. Its manifest is not checked. Authentication is
-/// left out, because a recording holds no key. Fails if the configuration takes GNSS from gpsd,
-/// because a recording holds no positions of gpsd. Warns if the model or the version of bevloc is
-/// another one than recorded.
+/// left out, because a recording holds no key. Fails if the configuration takes GNSS from gpsd and
+/// the recording has no positions of gpsd. Warns if the model or the version of bevloc is another
+/// one than recorded.
 Result<ReplaySetup> setup_of(Recording& recording, const ReplayOverrides& overrides,
                              const ScratchFolder& scratch);
 
 /// The setup for a candump log: a configuration and nothing recorded. Fails if the configuration
 /// takes GNSS from gpsd.
 Result<ReplaySetup> setup_of(const ReplayOverrides& overrides);
-
-/// The recorded frames and images. Refuses a rig whose images have another size than the recorded
-/// ones.
-Result<ReplayInputs> inputs_of(Recording& recording, const Rig& rig);
-
-/// Frames of a candump log, and for each camera a folder of `images` with pictures and frames.txt.
-/// The times of both are of one clock. Refuses a log with a gap of more than a minute, or with a
-/// line that goes back by more than a second.
-Result<ReplayInputs> inputs_of_candump(const std::filesystem::path& log,
-                                       const std::filesystem::path& images,
-                                       const ReplaySetup& setup);
 
 }  // namespace bevloc::evaluation

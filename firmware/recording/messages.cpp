@@ -152,6 +152,53 @@ Result<can::ReceivedFrame> bus_frame_of(const recording::CanFrame& message) {
   return received;
 }
 
+foxglove::LocationFix fix_message(const RecordedFix& recorded, uint64_t held_ns) {
+  constexpr uint32_t kApproximated = 1;
+  const drivers::GnssFix& fix = recorded.fix;
+  foxglove::LocationFix message;
+  set_time(held_ns, *message.mutable_timestamp());
+  message.set_frame_id("gnss");
+  message.set_latitude(fix.latitude_deg);
+  message.set_longitude(fix.longitude_deg);
+  for (const double sigma_m : {fix.sigma_east_m, 0.0, 0.0, 0.0, fix.sigma_north_m}) {
+    message.add_position_covariance(sigma_m * sigma_m);
+  }
+  for (int rest = 0; rest < 4; ++rest) message.add_position_covariance(0.0);
+  message.set_position_covariance_type(kApproximated);
+  message.set_clock_ns(clock_ns(recorded.held.time));
+  message.set_clock_sigma_ns(recorded.held.sigma.count());
+  message.set_utc_ns(fix.utc.count());
+  if (fix.speed_mps) message.set_speed_mps(*fix.speed_mps);
+  if (fix.course_deg) message.set_course_deg(*fix.course_deg);
+  message.set_sigma_course_deg(fix.sigma_course_deg);
+  return message;
+}
+
+Result<RecordedFix> fix_of(const foxglove::LocationFix& message, Time time) {
+  constexpr int kCovariances = 9;
+  RecordedFix recorded;
+  recorded.time = time;
+  drivers::GnssFix& fix = recorded.fix;
+  fix.latitude_deg = message.latitude();
+  fix.longitude_deg = message.longitude();
+  if (message.position_covariance_size() == kCovariances) {
+    fix.sigma_east_m = std::sqrt(message.position_covariance(0));
+    fix.sigma_north_m = std::sqrt(message.position_covariance(4));
+  }
+  if (message.has_speed_mps()) fix.speed_mps = message.speed_mps();
+  if (message.has_course_deg()) fix.course_deg = message.course_deg();
+  fix.sigma_course_deg = message.sigma_course_deg();
+  fix.utc = std::chrono::nanoseconds(message.utc_ns());
+  recorded.held = {drivers::FixVerdict::kUsable,
+                   Time(Duration(static_cast<int64_t>(message.clock_ns()))),
+                   Duration(message.clock_sigma_ns())};
+  const bool is_good = message.position_covariance_size() == kCovariances &&
+                       drivers::is_possible(fix) && message.clock_sigma_ns() >= 0;
+  if (is_good) return recorded;
+  return fail("found a position {:g}, {:g} with values that no receiver reports, wanted a fix",
+              message.latitude(), message.longitude());
+}
+
 recording::Solution solution_message(const can::PoseReport& report) {
   recording::Solution message;
   message.set_state(static_cast<uint32_t>(report.status.state));

@@ -27,6 +27,10 @@ foxglove::CameraCalibration calibration_message(const CameraModel& camera, int i
 recording::CanFrame bus_message(const RecordedBusFrame& frame);
 /// Fails for a message that is no frame, because it is too long or has a wrong identifier.
 Result<can::ReceivedFrame> bus_frame_of(const recording::CanFrame& message);
+/// `held_ns` is the log time of the moment at which the position held.
+foxglove::LocationFix fix_message(const RecordedFix& fix, uint64_t held_ns);
+/// Returns the fix that the appliance got at `time`. Fails for values that no receiver reports.
+Result<RecordedFix> fix_of(const foxglove::LocationFix& message, Time time);
 recording::Solution solution_message(const can::PoseReport& report);
 recording::Match match_message(const RecordedMatch& match);
 

@@ -10,6 +10,8 @@
 #include "common/se2.h"
 #include "common/time.h"
 #include "drivers/camera/frame.h"
+#include "drivers/gnss/fix_clock.h"
+#include "drivers/gnss/gpsd_report.h"
 #include "pipeline/solver/solver_result.h"
 
 namespace bevloc::firmware {
@@ -22,6 +24,13 @@ struct RecordedBusFrame {
   Time stamp;  ///< time of arrival
 };
 
+/// A position of gpsd that was used.
+struct RecordedFix {
+  Time time;  ///< when the appliance got it
+  drivers::GnssFix fix;
+  drivers::FixTime held;  ///< the moment of the position
+};
+
 struct RecordedSolution {
   can::PoseReport report;
 };
@@ -32,7 +41,7 @@ struct RecordedTruth {
   Se2 map_from_vehicle;
 };
 
-using RecordedEvent = std::variant<RecordedBusFrame, RecordedSolution, RecordedTruth>;
+using RecordedEvent = std::variant<RecordedBusFrame, RecordedFix, RecordedSolution, RecordedTruth>;
 
 /// One distribution of a match. If it has more hypotheses than fit, it is not recorded and `count`
 /// is 0.

@@ -160,6 +160,10 @@ void Recorder::write_event(const RecordedBusFrame& frame) {
   put(frame.sent ? kBusOutTopic : kBusInTopic, bus_message(frame), frame.time, frame.stamp);
 }
 
+void Recorder::write_event(const RecordedFix& fix) {
+  put(kGnssTopic, fix_message(fix, log_time(fix.held.time)), fix.time, fix.held.time);
+}
+
 void Recorder::write_event(const RecordedSolution& solution) {
   const can::PoseReport& report = solution.report;
   const Time time = report.pose_time;

@@ -24,9 +24,10 @@ struct Snapshot;
 
 /// Totals since start; readable from any thread. Each image and each event counts once.
 struct RecorderCounters {
-  std::atomic<uint64_t> images{0};          ///< images that are on the disk
-  std::atomic<uint64_t> events{0};          ///< events on the disk: bus frames, solutions, matches
-  std::atomic<uint64_t> images_dropped{0};  ///< no memory was free
+  std::atomic<uint64_t> images{0};  ///< images that are on the disk
+  /// Events on the disk: bus frames, fixes, solutions and matches.
+  std::atomic<uint64_t> events{0};
+  std::atomic<uint64_t> images_dropped{0};      ///< no memory was free
   std::atomic<uint64_t> images_too_large{0};    ///< do not fit into the memory of their camera
   std::atomic<uint64_t> images_not_encoded{0};  ///< cannot be encoded
   std::atomic<uint64_t> images_lost{0};         ///< lost because writing failed
@@ -55,6 +56,7 @@ class Recorder {
 
   void note_image(const drivers::Frame& frame, Time now);
   void note_bus_frame(const RecordedBusFrame& frame) { events_.push(frame); }
+  void note_fix(const RecordedFix& fix) { events_.push(fix); }
   void note_solution(const can::PoseReport& report) { events_.push(RecordedSolution{report}); }
   void note_truth(const RecordedTruth& truth) { events_.push(truth); }
   void note_match(const VisionSnapshot& snapshot, Time now);
@@ -92,6 +94,7 @@ class Recorder {
   void write_image(const RecordedImage& image);
   Status put_image(const RecordedImage& image);
   void write_event(const RecordedBusFrame& frame);
+  void write_event(const RecordedFix& fix);
   void write_event(const RecordedSolution& solution);
   void write_event(const RecordedTruth& truth);
   void write_match(const RecordedMatch& match);

@@ -88,6 +88,11 @@ void watch(Appliance& appliance, Recorder& recorder) {
   });
   appliance.estimation().observe_reports(
       [&recorder](const can::PoseReport& report) { recorder.note_solution(report); });
+  if (GnssStage* gnss = appliance.gnss(); gnss != nullptr) {
+    gnss->observe([&recorder, &clock](const drivers::GnssFix& fix, const drivers::FixTime& time) {
+      recorder.note_fix({clock.now(), fix, time});
+    });
+  }
   recorder.count_with([&appliance] { return take_snapshot(appliance, {}); });
 }
 

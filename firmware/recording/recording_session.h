@@ -21,8 +21,8 @@ Result<std::unique_ptr<Recorder>> open_recorder(const Config& config, const Rig&
 /// must outlive the hardware.
 void tap(Hardware& hardware, Recorder& recorder);
 
-/// Makes the appliance record matches, solutions and counters. Call it before the first step of the
-/// appliance. `recorder` must outlive the appliance's last step.
+/// Makes the appliance record matches, solutions, fixes of gpsd and counters. Call it before the
+/// first step of the appliance. `recorder` must outlive the appliance's last step.
 void watch(Appliance& appliance, Recorder& recorder);
 
 /// Returns the totals of the recording that the configuration asks for, or nothing if it asks for

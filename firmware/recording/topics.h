@@ -11,6 +11,7 @@ namespace bevloc::firmware {
 /// The names of the topics. Each comment names the schema of the messages.
 inline constexpr std::string_view kBusInTopic = "/can/in";       ///< bevloc.recording.CanFrame
 inline constexpr std::string_view kBusOutTopic = "/can/out";     ///< bevloc.recording.CanFrame
+inline constexpr std::string_view kGnssTopic = "/gnss";          ///< foxglove.LocationFix
 inline constexpr std::string_view kSolutionTopic = "/solution";  ///< bevloc.recording.Solution
 inline constexpr std::string_view kPoseTopic = "/pose";          ///< foxglove.PoseInFrame
 inline constexpr std::string_view kTruthTopic = "/truth";        ///< foxglove.PoseInFrame

@@ -58,19 +58,25 @@ GnssStage::GnssStage(const GnssConfig& config, can::GeodeticPosition map_origin,
 void GnssStage::step(Duration timeout) {
   client_.wait(clock_.now(), timeout);
   const drivers::FixArrival arrival{clock_.now(), clock_.unsteered(), read_wall_()};
-  while (const auto fix = client_.take_fix()) take(*fix, arrival);
+  while (const auto fix = client_.take_fix()) judge(*fix, arrival);
   counters_.gpsd = client_.counters();
   counters_.connected = client_.is_connected();
   counters_.max_age = fix_clock_.max_usable_age();
   published_.store(counters_);
 }
 
-void GnssStage::take(const drivers::GnssFix& fix, const drivers::FixArrival& arrival) {
+void GnssStage::judge(const drivers::GnssFix& fix, const drivers::FixArrival& arrival) {
   const drivers::FixTime time = fix_clock_.judge(fix.utc, arrival);
   ++counters_.fixes[static_cast<size_t>(time.verdict)];
   if (time.verdict != drivers::FixVerdict::kUsable) return;
+  if (observer_) observer_(fix, time);
+  take(fix, time);
+}
+
+void GnssStage::take(const drivers::GnssFix& fix, const drivers::FixTime& time) {
   ++counters_.samples;
   samples_.push(gnss_sample_of(fix, time, config_, geo_));
+  published_.store(counters_);
 }
 
 }  // namespace bevloc::firmware

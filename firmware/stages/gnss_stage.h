@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "can/messages/sample_maker.h"
@@ -31,6 +32,7 @@ struct GnssCounters {
 class GnssStage {
  public:
   using ReadWall = drivers::WallTime (*)();
+  using Observer = std::function<void(const drivers::GnssFix& fix, const drivers::FixTime& time)>;
 
   /// `clock` and `samples` must outlive the stage.
   GnssStage(const GnssConfig& config, can::GeodeticPosition map_origin, const drivers::Clock& clock,
@@ -39,10 +41,18 @@ class GnssStage {
   /// Waits for reports of gpsd, at most `timeout` of real time, and queues their samples.
   void step(Duration timeout);
 
+  /// Queues the sample of a fix whose time is known. A replay gives the recorded fixes to it
+  /// instead of calling step().
+  void take(const drivers::GnssFix& fix, const drivers::FixTime& time);
+
+  /// Sets a function that is called with each fix that is used. It is called in the thread of the
+  /// stage. Call this before the first step().
+  void observe(Observer observer) { observer_ = std::move(observer); }
+
   GnssCounters counters() const { return published_.load(); }
 
  private:
-  void take(const drivers::GnssFix& fix, const drivers::FixArrival& arrival);
+  void judge(const drivers::GnssFix& fix, const drivers::FixArrival& arrival);
 
   const GnssConfig config_;
   can::GeoReference geo_;
@@ -51,6 +61,7 @@ class GnssStage {
   const ReadWall read_wall_;
   drivers::GpsdClient client_;
   drivers::FixClock fix_clock_;
+  Observer observer_;
   GnssCounters counters_;
   Published<GnssCounters> published_;
 };

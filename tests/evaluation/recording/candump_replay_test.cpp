@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/files.h"
+#include "evaluation/recording/candump_inputs.h"
 #include "evaluation/recording/replay_setup.h"
 #include "tests/evaluation/recording/replay_config.h"
 #include "tests/support/temporary_folder.h"
@@ -37,7 +38,7 @@ TEST(CandumpReplay, AcceptsPausesAndFineDisorder) {
             0U);
 }
 
-/// A replay has no gpsd. Without positions it would find no pose.
+/// A candump log has no positions of gpsd. Without positions it would find no pose.
 TEST(CandumpReplay, RefusesAConfigurationWithGpsd) {
   const std::string text = test::replay_config_text();
   const test::TemporaryFolder folder;

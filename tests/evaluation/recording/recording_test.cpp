@@ -3,13 +3,16 @@
 #include "evaluation/recording/recording.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "common/files.h"
 #include "evaluation/drive/simulated_run.h"
+#include "evaluation/recording/replay_inputs.h"
 #include "evaluation/recording/replay_setup.h"
+#include "evaluation/recording/track.h"
 #include "evaluation/report/report_page.h"
 #include "firmware/recording/recording_file.h"
 #include "firmware/recording/topics.h"
@@ -100,6 +103,53 @@ TEST_F(RecordedDriveTest, TheReplaySendsTheSameFramesByteForByte) {
   const std::string replayed = read_file(*folder_ / "replayed.log").value();
   ASSERT_GT(live.size(), 100'000U);
   EXPECT_TRUE(replayed.starts_with(live));
+}
+
+/// The positions that a receiver on the rear axle gives along this track, ten in a second. Each one
+/// arrives 80 ms after its moment.
+std::vector<firmware::RecordedFix> fixes_along(const Track& track, const GeoOrigin& origin) {
+  constexpr Duration kAge = std::chrono::milliseconds(80);
+  can::GeoReference geo({origin.latitude_deg, origin.longitude_deg});
+  std::vector<firmware::RecordedFix> fixes;
+  for (Time time = track.front().time; time < track.back().time;
+       time += std::chrono::milliseconds(100)) {
+    const auto pose = pose_at(track, time);
+    if (!pose) continue;
+    const can::GeodeticPose geodetic = geo.geodetic_from_map(*pose);
+    firmware::RecordedFix& fix = fixes.emplace_back();
+    fix.time = time + kAge;
+    fix.fix = {.latitude_deg = geodetic.position.latitude_deg,
+               .longitude_deg = geodetic.position.longitude_deg,
+               .sigma_north_m = 1.0,
+               .sigma_east_m = 1.0,
+               .speed_mps = 8.0,
+               .course_deg = geodetic.heading_deg};
+    fix.held = {drivers::FixVerdict::kUsable, time, std::chrono::milliseconds(10)};
+  }
+  return fixes;
+}
+
+TEST_F(RecordedDriveTest, PositionsOfGpsdLeadToThePose) {
+  const ScratchFolder scratch = ScratchFolder::create().value();
+  auto setup = setup_of(*recording_, {}, scratch);
+  ASSERT_TRUE(setup) << setup.error().message;
+  auto inputs = inputs_of(*recording_, setup->rig);
+  const auto truth = read_track(*recording_, firmware::kTruthTopic);
+  ASSERT_TRUE(inputs && truth);
+  setup->config.gnss.emplace();
+  const auto last_pose = [&] {
+    const auto outcome = replay(*setup, *inputs, *folder_ / "gpsd.log");
+    return outcome ? outcome->poses.back() : ReplayedPose{};
+  };
+  EXPECT_FALSE(last_pose().map_from_vehicle) << "the positions of the bus do not count";
+  inputs->fixes = fixes_along(*truth, setup->map.origin);
+  const ReplayedPose pose = last_pose();
+  const auto expected = pose_at(*truth, pose.time);
+  ASSERT_TRUE(pose.map_from_vehicle && expected);
+  EXPECT_EQ(pose.state, HealthState::kTracking);
+  EXPECT_LT(std::hypot(pose.map_from_vehicle->x_m - expected->x_m,
+                       pose.map_from_vehicle->y_m - expected->y_m),
+            0.5);
 }
 
 TEST_F(RecordedDriveTest, EveryFrameIsThereAndTheMapIsTheSame) {

@@ -5,6 +5,7 @@
 
 #include "common/files.h"
 #include "common/version.h"
+#include "evaluation/recording/replay_inputs.h"
 #include "tests/evaluation/recording/hand_made_recording.h"
 #include "tests/evaluation/recording/replay_config.h"
 #include "tests/evaluation/refusal.h"
@@ -70,6 +71,37 @@ TEST(ReplaySetup, WarnsOfARecordingOfAnotherVersion) {
   };
   EXPECT_THAT(said_about("0.0.1-other"), HasSubstr("found a recording of bevloc 0.0.1-other"));
   EXPECT_THAT(said_about(std::string(version())), Not(HasSubstr("found a recording of bevloc")));
+}
+
+TEST(ReplaySetup, NeedsThePositionsOfGpsdThatTheConfigurationTakes) {
+  const test::TemporaryFolder folder;
+  ReplayOverrides overrides;
+  overrides.config = folder / "config.yaml";
+  const std::string gnss = "gnss: {driver: gpsd, antenna_m: [0, 0], latency_ms: 90}\n";
+  ASSERT_TRUE(write_file(overrides.config, test::replay_config_text() + gnss));
+  const auto open_with_fixes = [&folder](int count) {
+    const std::string name = fmt::format("{}-0001.mcap", count);
+    test::HandMadeRecording made(folder / name);
+    made.add_pose(0.0, 0.0);
+    firmware::RecordedFix fix;
+    fix.fix.sigma_east_m = fix.fix.sigma_north_m = 1.0;
+    for (int i = 0; i < count; ++i) {
+      made.add(firmware::kGnssTopic, firmware::fix_message(fix, 0), 0.1 * i);
+    }
+    return made.open();
+  };
+  const ScratchFolder scratch = ScratchFolder::create().value();
+  Recording without = open_with_fixes(0);
+  const auto refused = setup_of(without, overrides, scratch);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("found no positions of gpsd"));
+  Recording with = open_with_fixes(3);
+  const auto setup = setup_of(with, overrides, scratch);
+  ASSERT_TRUE(setup) << setup.error().message;
+  const auto inputs = inputs_of(with, setup->rig);
+  ASSERT_TRUE(inputs) << inputs.error().message;
+  ASSERT_EQ(inputs->fixes.size(), 3U);
+  EXPECT_EQ(inputs->fixes[2].time - inputs->fixes[0].time, std::chrono::milliseconds(200));
 }
 
 TEST(BusText, SaysThatADriveInRealTimeCannotBeEqual) {

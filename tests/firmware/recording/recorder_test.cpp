@@ -1,6 +1,7 @@
 // The recorder: files and their order, the black box, and its messages.
 #include "firmware/recording/recorder.h"
 
+#include <cmath>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -39,6 +40,66 @@ TEST_F(RecorderTest, ImagesKeepTheirPixelsAndTimes) {
   EXPECT_EQ(image.sequence(), 42U);
   EXPECT_EQ(image.exposure_ns(), 8'000'000);
   EXPECT_EQ(image.data(), std::string(16 * 8 * 3, '\x2a'));
+}
+
+TEST_F(RecorderTest, APositionOfGpsdIsReadAsItWas) {
+  RecordedFix fix;
+  fix.time = Time{std::chrono::milliseconds(700)};
+  fix.fix = {.latitude_deg = 49.01123456789,
+             .longitude_deg = -8.40443210987,
+             .sigma_north_m = 0.7,
+             .sigma_east_m = 1.3,
+             .speed_mps = 12.3,
+             .course_deg = 271.25,
+             .sigma_course_deg = 2.5,
+             .utc = std::chrono::nanoseconds(1'795'000'000'125'000'000)};
+  fix.held = {drivers::FixVerdict::kUsable, Time{std::chrono::milliseconds(610)},
+              std::chrono::milliseconds(50)};
+  const auto recorder = open();
+  recorder->note_fix(fix);
+  recorder->finish(Time{std::chrono::seconds(1)});
+  const auto reader = mcap::Reader::open(first_in(config_.directory));
+  ASSERT_TRUE(reader) << reader.error().message;
+  const auto chunk = reader->read_chunk(0);
+  ASSERT_TRUE(chunk && chunk->messages.size() == 1);
+  const mcap::Message& message = chunk->messages[0];
+  EXPECT_EQ(reader->channels().at(message.channel_id).topic, kGnssTopic);
+  EXPECT_EQ(message.log_time_ns,
+            static_cast<uint64_t>((test::kRecorderOffset + fix.time.time_since_epoch()).count()));
+  foxglove::LocationFix recorded;
+  ASSERT_TRUE(recorded.ParseFromArray(message.data.data(), static_cast<int>(message.data.size())));
+  const auto read = fix_of(recorded, fix.time);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->time, fix.time);
+  EXPECT_EQ(read->held.time, fix.held.time);
+  EXPECT_EQ(read->held.sigma, fix.held.sigma);
+  EXPECT_EQ(read->fix.latitude_deg, fix.fix.latitude_deg);
+  EXPECT_EQ(read->fix.longitude_deg, fix.fix.longitude_deg);
+  EXPECT_EQ(read->fix.sigma_north_m, fix.fix.sigma_north_m);
+  EXPECT_EQ(read->fix.sigma_east_m, fix.fix.sigma_east_m);
+  EXPECT_EQ(read->fix.speed_mps, fix.fix.speed_mps);
+  EXPECT_EQ(read->fix.course_deg, fix.fix.course_deg);
+  EXPECT_EQ(read->fix.sigma_course_deg, fix.fix.sigma_course_deg);
+  EXPECT_EQ(read->fix.utc, fix.fix.utc);
+}
+
+TEST(FixMessage, ValuesThatNoReceiverReportsAreRefused) {
+  RecordedFix good;
+  good.fix.sigma_east_m = good.fix.sigma_north_m = 1.0;
+  const foxglove::LocationFix message = fix_message(good, 0);
+  ASSERT_TRUE(fix_of(message, Time{}));
+  const auto refused = [&message](auto change) {
+    foxglove::LocationFix changed = message;
+    change(changed);
+    return !fix_of(changed, Time{});
+  };
+  EXPECT_TRUE(refused([](auto& fix) { fix.set_latitude(91.0); }));
+  EXPECT_TRUE(refused([](auto& fix) { fix.set_longitude(std::nan("")); }));
+  EXPECT_TRUE(refused([](auto& fix) { fix.set_position_covariance(0, -1.0); }));
+  EXPECT_TRUE(refused([](auto& fix) { fix.mutable_position_covariance()->Clear(); }));
+  EXPECT_TRUE(refused([](auto& fix) { fix.set_speed_mps(-1.0); }));
+  EXPECT_TRUE(refused([](auto& fix) { fix.set_course_deg(std::nan("")); }));
+  EXPECT_TRUE(refused([](auto& fix) { fix.set_clock_sigma_ns(-1); }));
 }
 
 TEST_F(RecorderTest, NamesAFileByTheTimeInUtcAlsoAfter2038) {

@@ -1,5 +1,8 @@
 #include "firmware/stages/gnss_stage.h"
 
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -119,6 +122,28 @@ TEST_F(GnssStageTest, QueuesSamplesWithTheirOwnTime) {
   EXPECT_EQ(fixes(drivers::FixVerdict::kLearning), 2U);
   EXPECT_TRUE(stage_->counters().connected);
   EXPECT_EQ(stage_->counters().max_age, milliseconds(100));
+}
+
+TEST_F(GnssStageTest, TellsTheFixesThatItUsesSoThatAReplayCanRepeatThem) {
+  std::vector<std::pair<drivers::GnssFix, drivers::FixTime>> told;
+  stage_->observe([&told](const drivers::GnssFix& fix, const drivers::FixTime& time) {
+    told.emplace_back(fix, time);
+  });
+  for (int second = 1; second <= 3; ++second) {
+    say_fix(second);
+    stage_->step(kPatience);
+    clock_.advance(seconds(1));
+  }
+  ASSERT_EQ(told.size(), 1U) << "the first two fixes only teach the clock";
+  const auto used = std::get<GnssSample>(samples_.pop(Duration::zero()).value());
+  GnssStage repeated(config_, kMapOrigin, clock_, samples_);
+  repeated.take(told[0].first, told[0].second);
+  const auto sample = std::get<GnssSample>(samples_.pop(Duration::zero()).value());
+  EXPECT_EQ(sample.time, used.time);
+  EXPECT_EQ(sample.east_m, used.east_m);
+  EXPECT_EQ(sample.north_m, used.north_m);
+  EXPECT_EQ(sample.sigma_east_m, used.sigma_east_m);
+  EXPECT_EQ(repeated.counters().samples, 1U);
 }
 
 TEST_F(GnssStageTest, CountsWhatItRefuses) {
