@@ -378,6 +378,7 @@ Result<ImportedMap> parse_lanelet2(std::string_view text, const std::filesystem:
   Result<NodePositions> nodes = locate_nodes(*document);
   if (!nodes) return tl::unexpected(nodes.error());
   ImportReport report;
+  if (!nodes->remark.empty()) report.remark(nodes->remark);
   if (Status status = place_on_earth(*nodes, options, file.string(), report); !status) {
     return tl::unexpected(status.error());
   }

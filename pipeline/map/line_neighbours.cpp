@@ -40,11 +40,6 @@ void for_each_point(const std::vector<Eigen::Vector2d>& line, Visit visit) {
 }  // namespace
 
 struct LineNeighbours::Index {
-  struct Segment {
-    Eigen::Vector2d from;
-    Eigen::Vector2d to;
-    int64_t id;
-  };
   using Entry = std::pair<Box, size_t>;
 
   std::vector<Segment> segments;
@@ -66,18 +61,24 @@ double LineNeighbours::share_beside(const std::vector<Eigen::Vector2d>& line, do
                                     const std::function<bool(int64_t)>& counts) const {
   int points = 0;
   int near = 0;
-  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(reach_m);
+  const auto has_right_id = [&](const Segment& segment) { return counts(segment.id); };
   for_each_point(line, [&](const Eigen::Vector2d& point) {
     ++points;
-    const auto is_near = geometry::index::satisfies([&](const Index::Entry& entry) {
-      const Index::Segment& segment = index_->segments[entry.second];
-      return counts(segment.id) && distance_to_segment(point, segment.from, segment.to) <= reach_m;
-    });
-    const Box around = box_of(point - reach, point + reach);
-    const auto first = index_->boxes.qbegin(geometry::index::intersects(around) && is_near);
-    near += first != index_->boxes.qend() ? 1 : 0;
+    near += has_near(point, reach_m, has_right_id) ? 1 : 0;
   });
   return points > 0 ? static_cast<double>(near) / points : 0.0;
+}
+
+bool LineNeighbours::has_near(const Eigen::Vector2d& point, double reach_m,
+                              const std::function<bool(const Segment&)>& counts) const {
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(reach_m);
+  const auto is_near = geometry::index::satisfies([&](const Index::Entry& entry) {
+    const Segment& segment = index_->segments[entry.second];
+    return counts(segment) && distance_to_segment(point, segment.from, segment.to) <= reach_m;
+  });
+  const Box around = box_of(point - reach, point + reach);
+  return index_->boxes.qbegin(geometry::index::intersects(around) && is_near) !=
+         index_->boxes.qend();
 }
 
 }  // namespace bevloc

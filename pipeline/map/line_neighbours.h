@@ -13,6 +13,12 @@ namespace bevloc {
 /// A set of lines, each with an id.
 class LineNeighbours {
  public:
+  struct Segment {
+    Eigen::Vector2d from;
+    Eigen::Vector2d to;
+    int64_t id;  ///< of its line
+  };
+
   LineNeighbours();
   ~LineNeighbours();
 
@@ -22,6 +28,10 @@ class LineNeighbours {
   /// lines whose id `counts` accepts are considered.
   double share_beside(const std::vector<Eigen::Vector2d>& line, double reach_m,
                       const std::function<bool(int64_t)>& counts) const;
+
+  /// Whether the set has a segment within `reach_m` of `point` that `counts` accepts.
+  bool has_near(const Eigen::Vector2d& point, double reach_m,
+                const std::function<bool(const Segment&)>& counts) const;
 
  private:
   struct Index;

@@ -206,30 +206,36 @@ std::optional<GeoOrigin> place_in_square(const std::string& square, std::complex
 
 /// Autoware's maps without latitude and longitude say in which MGRS square their local coordinates
 /// are. Replaces the local coordinates by places, unless a node has a place already, or a node with
-/// local coordinates names no square.
-void place_in_squares(std::vector<UsedNode>& nodes) {
+/// local coordinates names no square. Returns a remark if it names one that does not exist.
+std::string place_in_squares(std::vector<UsedNode>& nodes, const std::string& file) {
   std::vector<UsedNode> placed = nodes;
   const auto first = std::ranges::find_if(placed, has_local);
-  if (first == placed.end()) return;
+  if (first == placed.end()) return "";
   const bool is_one_square = std::ranges::all_of(placed, [&](const UsedNode& node) {
     return !node.local_m || node.mgrs_square == first->mgrs_square;
   });
   for (UsedNode& node : placed) {
-    if (node.place) return;
+    if (node.place) return "";
     if (!node.local_m) continue;
     node.place = place_in_square(node.mgrs_square, within_square(*node.local_m, is_one_square));
-    if (!node.place) return;
+    if (node.place) continue;
+    if (node.mgrs_square.empty()) return "";
+    return fmt::format(
+        "{}:{}: node {}: found an mgrs_code of the square \"{:.20}\", which does not exist, wanted "
+        "one such as 54SUE, from which the map gets its place on earth",
+        file, node.line, node.id, node.mgrs_square);
   }
   for (UsedNode& node : placed) node.local_m.reset();
   nodes = std::move(placed);
+  return "";
 }
 
 }  // namespace
 
 Result<NodePositions> locate_nodes(const OsmDocument& document) {
   std::vector<UsedNode> nodes = used_nodes(document);
-  place_in_squares(nodes);
   NodePositions positions;
+  positions.remark = place_in_squares(nodes, document.file);
   std::vector<LocatedNode> with_both;
   if (const auto middle = middle_of(nodes)) {
     positions.origin = *middle;

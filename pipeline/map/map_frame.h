@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct NodePositions {
   /// Metres east and north of the origin. Contains neither nodes without coordinates nor nodes that
   /// no way uses.
   std::unordered_map<int64_t, Eigen::Vector2d> of_node;
+  /// Names a node whose tag mgrs_code is needed but names no MGRS square, or is "".
+  std::string remark{};
 };
 
 /// The map frame is the east-north tangent plane at the middle of the nodes of the file's ways.
@@ -27,9 +30,9 @@ struct NodePositions {
 /// latitude and longitude: one similarity (shift, rotation, scale) maps all local coordinates into
 /// the tangent plane. It is fitted to the nodes that have both. If no node has latitude and
 /// longitude, but all with local coordinates have an MGRS square (tag mgrs_code), the local
-/// coordinates are UTM coordinates within it. If all have the same square, they may go on up to 50
-/// km beyond its border. Otherwise the local coordinates are the map frame and the unknown origin
-/// is (0, 0).
+/// coordinates are UTM coordinates within it. White space in the code does not count. If all have
+/// the same square, they may go on up to 50 km beyond its border. Otherwise the local coordinates
+/// are the map frame and the unknown origin is (0, 0).
 ///
 /// Fails if some nodes have latitude and longitude, others local coordinates, and fewer than two at
 /// different places have both. Fails, with line and node, if the two kinds disagree by more than 1

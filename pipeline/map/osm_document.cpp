@@ -27,13 +27,15 @@ std::optional<double> height_from(std::string_view text) {
   return height_m && std::abs(*height_m) <= kHighest_m ? height_m : std::nullopt;
 }
 
-/// Zone, band and square ("54SUE") of an MGRS code: what comes before its numbers.
-std::string mgrs_square_of(std::string_view code) {
+/// Zone, band and square ("54SUE") of an MGRS code: what comes before its numbers. White space does
+/// not count.
+std::string mgrs_square_of(std::string code) {
+  std::erase_if(code, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   size_t end = 0;
   while (end < code.size() && is_digit(code[end])) ++end;
   while (end < code.size() && !is_digit(code[end])) ++end;
-  return std::string(code.substr(0, end));
+  return code.substr(0, end);
 }
 
 /// Reads the elements of one file. Stops at the first error.

@@ -89,10 +89,11 @@ class Collector {
       keep(sensors_, document, file);
     } else if (document.has("distortion_model") && document.has("camera_matrix")) {
       cameras_.push_back(calibration_import::read_camera_info(document, stem));
+    } else if (is_kalibr(document)) {
+      // OpenVINS writes chains with the header of OpenCV.
+      take(calibration_import::read_kalibr(document));
     } else if (file.text.starts_with("%YAML:")) {
       cameras_.push_back(calibration_import::read_opencv(document, stem));
-    } else if (is_kalibr(document)) {
-      take(calibration_import::read_kalibr(document));
     } else {
       refuse(file.name, "no known calibration",
              "a camchain of Kalibr, a FileStorage of OpenCV (%YAML:1.0), a camera_info of ROS, "

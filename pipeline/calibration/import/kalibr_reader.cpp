@@ -119,6 +119,8 @@ std::vector<ImportedCamera> read_kalibr(const ForeignNode& document) {
     ImportedCamera imported{names.at(key), camera.place(), intrinsics_of(camera)};
     if (camera.has("T_cam_imu")) {
       imported.mounting = {"imu", transform_at(camera, "T_cam_imu").inverse()};
+    } else if (camera.has("T_imu_cam")) {
+      imported.mounting = {"imu", transform_at(camera, "T_imu_cam")};
     } else if (camera.has("T_cn_cnm1")) {
       const std::string before = key_before(entries, i);
       const auto parent = names.find(before);

@@ -13,8 +13,9 @@ namespace bevloc::calibration_import {
 /// Reads Kalibr's camchain: `cam0`, `cam1` and so on. A camera gets its name from the first word of
 /// its `rostopic`, or from its key if it has no topic or if another camera has that name. The
 /// camera_model must be pinhole, and the distortion_model radtan, equidistant or none. T_cam_imu
-/// maps points of the IMU into the camera. T_cn_cnm1 maps points of the camera before (cam2 for
-/// cam3) into this one. timeshift_cam_imu is not used.
+/// maps points of the IMU into the camera; T_imu_cam of OpenVINS maps points of the camera into the
+/// IMU. T_cn_cnm1 maps points of the camera before (cam2 for cam3) into this one. timeshift_cam_imu
+/// is not used.
 std::vector<ImportedCamera> read_kalibr(const ForeignNode& document);
 
 /// Reads a FileStorage file of OpenCV: camera_matrix (or K), distortion_coefficients (or

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -71,8 +73,16 @@ Polyline flat(const Line3& line) {
 /// Two bounds this close, along this share, are the same line.
 constexpr double kSameMark_m = 0.4;
 constexpr double kSameMarkShare = 0.8;
-/// Outlines within this distance of a lane's centre line cut the lane.
-constexpr double kCutsLane_m = 1.0;
+/// No lane is wider than twice this.
+constexpr double kWidestHalf_m = 10.0;
+
+double distance_to_bound(const Eigen::Vector2d& point, const Polyline& bound) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i + 1 < bound.size(); ++i) {
+    nearest_m = std::min(nearest_m, distance_to_segment(point, bound[i], bound[i + 1]));
+  }
+  return nearest_m;
+}
 
 class Argoverse2Reader {
  public:
@@ -134,8 +144,9 @@ class Argoverse2Reader {
             return {};
           }
           driven.centerline = centerline_between(driven.left, driven.right);
-          centers_.add(static_cast<int64_t>(lane_of_.size()), driven.centerline);
-          lane_of_[id] = builder_.add_lane(std::move(driven));
+          const uint32_t index = builder_.add_lane(std::move(driven));
+          centers_.add(index, builder_.lanes()[index].centerline);
+          lane_of_[id] = index;
           return {};
         });
     if (status) link();
@@ -214,9 +225,23 @@ class Argoverse2Reader {
     return status;
   }
 
+  /// Whether an edge lies across a lane: within half the width of the lane from its centre line,
+  /// and at more than 45 degrees to it. Edges that taper with a lane are near its centre line, too.
+  bool cuts_lane(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+    const Eigen::Vector2d middle = 0.5 * (from + to);
+    return centers_.has_near(middle, kWidestHalf_m, [&](const LineNeighbours::Segment& center) {
+      const Eigen::Vector2d edge = to - from;
+      const Eigen::Vector2d along = center.to - center.from;
+      if (std::abs(edge.dot(along)) >= std::abs(cross(edge, along))) return false;
+      const Polyline& bound = builder_.lanes()[static_cast<size_t>(center.id)].left;
+      const double half_m =
+          std::max(distance_to_bound(center.from, bound), distance_to_bound(center.to, bound));
+      return distance_to_segment(middle, center.from, center.to) <= half_m;
+    });
+  }
+
   /// Cuts an outline where it crosses a lane, which happens at the ends of the map.
   void add_outline(const std::string& where, Line3 line) {
-    const auto any = [](int64_t) { return true; };
     Line3 kept;
     const auto flush = [&] {
       builder_.add("edge of the drivable area", where,
@@ -225,10 +250,11 @@ class Argoverse2Reader {
       kept.clear();
     };
     for (size_t i = 0; i + 1 < line.size(); ++i) {
-      const Polyline piece{line[i].head<2>(), line[i + 1].head<2>()};
-      if (centers_.share_beside(piece, kCutsLane_m, any) > 0.5) {
+      const Eigen::Vector2d from = line[i].head<2>();
+      const Eigen::Vector2d to = line[i + 1].head<2>();
+      if (cuts_lane(from, to)) {
         builder_.drop("edge of the drivable area", where, "it cuts a lane at the end of the map",
-                      (piece[1] - piece[0]).norm());
+                      (to - from).norm());
         if (kept.size() > 1) flush();
         kept.clear();
         continue;

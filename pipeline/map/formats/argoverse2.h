@@ -12,7 +12,7 @@ namespace bevloc {
 /// - Lane dividers: painted bounds of lanes, each once ("lane mark SOLID_WHITE" and so on).
 /// - Pedestrian crossings: the area between edge1 and edge2.
 /// - Road boundaries: the outline of all drivable areas together, except where the outline cuts a
-///   lane at the end of the map.
+///   lane for vehicles at the end of the map, which means that it lies across the lane.
 /// - Lanes: lane segments of type VEHICLE or BUS, with their successors.
 ///
 /// Coordinates are those of the city. The city, and so the place on earth, comes from the name of

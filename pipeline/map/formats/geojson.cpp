@@ -74,7 +74,9 @@ class GeojsonReader {
     if (kind.empty()) kind = text_member(properties, "type");
     if (kind.empty()) kind = "no class";
     const JsonPath at = path / "geometry";
-    if (kind == "lane" && text_member(geometry, "type") == "LineString") {
+    const bool has_bounds =
+        member(properties, "left").is_array() || member(properties, "right").is_array();
+    if (kind == "lane" && has_bounds && text_member(geometry, "type") == "LineString") {
       return read_lane(member(geometry, "coordinates"), at / "coordinates", properties, path);
     }
     return add_geometry({kind, where, properties}, geometry, at);

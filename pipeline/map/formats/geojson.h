@@ -15,7 +15,8 @@ namespace bevloc {
 /// `type`) gives the kind: the words of class_names.h ("lane divider" or "divider"), or any word
 /// that the class table knows; `appearance` is optional. A feature of class "lane" has the
 /// centre line, and the properties `left`, `right` (lists of longitude and latitude), `speed_mps`
-/// and `successors` (numbers of lanes, in the order of the file), as to_geojson() writes them.
+/// and `successors` (numbers of lanes, in the order of the file), as to_geojson() writes them. With
+/// neither list of bounds, "lane" is a kind like any other.
 ///
 /// Fails with file, line and path on what is not GeoJSON, and on positions beyond the earth.
 Result<ImportedMap> parse_geojson(std::string_view text, const std::filesystem::path& file,

@@ -82,6 +82,9 @@ class MapBuilder {
   /// Names a part that was lost because the file is wrong there. See HdMap::left_out.
   void leave_out(std::string sentence) { map_.left_out.push_back(std::move(sentence)); }
 
+  /// Whether no element was added.
+  bool is_empty() const { return map_.elements.empty(); }
+
   /// The median of all points that were added, in the coordinates of the file, or (0, 0) without
   /// any.
   Eigen::Vector2d middle() const;

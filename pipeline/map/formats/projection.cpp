@@ -47,6 +47,10 @@ class TransverseMercatorPlane : public Projection {
     return place;
   }
 
+  double distance_from_meridian_m(const Eigen::Vector2d& point) const override {
+    return std::abs(point.x() - parameters_.false_origin_m.x());
+  }
+
  private:
   Parameters parameters_;
   GeographicLib::TransverseMercator mercator_;
@@ -74,10 +78,16 @@ class MovedPlane : public Projection {
   }
 
   GeoOrigin geographic(const Eigen::Vector2d& point) const override {
-    return inner_->geographic(rotation_ * point + shift_);
+    return inner_->geographic(moved(point));
+  }
+
+  double distance_from_meridian_m(const Eigen::Vector2d& point) const override {
+    return inner_->distance_from_meridian_m(moved(point));
   }
 
  private:
+  Eigen::Vector2d moved(const Eigen::Vector2d& point) const { return rotation_ * point + shift_; }
+
   std::unique_ptr<Projection> inner_;
   Eigen::Matrix2d rotation_;
   Eigen::Vector2d shift_;

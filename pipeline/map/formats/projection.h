@@ -19,6 +19,9 @@ class Projection {
   virtual ~Projection() = default;
   /// Latitude and longitude of a point of the file.
   virtual GeoOrigin geographic(const Eigen::Vector2d& point) const = 0;
+  /// How far a point of the file lies from the meridian in the middle of the plane, in metres. 0 if
+  /// the plane has no such meridian.
+  virtual double distance_from_meridian_m(const Eigen::Vector2d& /*point*/) const { return 0.0; }
 };
 
 /// Reads a PROJ string. Understands +proj=utm (+zone, +south), +proj=tmerc (+lat_0, +lon_0, +k or

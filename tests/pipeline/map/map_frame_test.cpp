@@ -110,6 +110,24 @@ TEST(MapFrame, NamesTheNodeThatDoesNotFitTheAngles) {
   }
 }
 
+TEST(MapFrame, BlanksInAnMgrsCodeDoNotCount) {
+  const ImportedMap imported =
+      readable_frame(local_node(1, 81'600, 50'100, "54S UE 81600 50100") +
+                     local_node(2, 81'650, 50'100, " 54SUE8165050100") + kerb_through(11, {1, 2}));
+  EXPECT_NEAR(imported.map.origin.latitude_deg, 35.68, 0.01);
+  EXPECT_NEAR(imported.map.origin.longitude_deg, 139.69, 0.01);
+  EXPECT_THAT(imported.report.remarks(), IsEmpty());
+}
+
+TEST(MapFrame, AnMgrsCodeWithoutASquareIsNamed) {
+  const ImportedMap imported =
+      readable_frame(local_node(1, 81'600, 50'100, "54SUE8160050100") +
+                     local_node(2, 81'650, 50'100, "UE8165050100") + kerb_through(11, {1, 2}));
+  EXPECT_FALSE(is_known(imported.map.origin));
+  EXPECT_THAT(imported.report.remarks(),
+              Contains(StartsWith("frame.osm:3: node 2: found an mgrs_code of the square \"UE\"")));
+}
+
 TEST(MapFrame, ASquareGoesOnBeyondItsBorder) {
   const auto points_of_kerb = [](const std::vector<Eigen::Vector2d>& local_m) {
     std::string elements;

@@ -160,6 +160,21 @@ class DocumentReader {
     return value * mps_from(speed.attribute("unit").value());
   }
 
+  RoadMark read_mark(const pugi::xml_node& node) {
+    RoadMark mark;
+    mark.start_m = number(node, "sOffset", kLargestNumber, 0.0);
+    mark.type = node.attribute("type").value();
+    double sum_m = 0.0;
+    int lines = 0;
+    for (const pugi::xml_node& line : node.child("type").children("line")) {
+      sum_m += number(line, "tOffset", kLargestNumber, 0.0);
+      ++lines;
+    }
+    if (lines > 0) mark.offset_m = sum_m / lines;
+    mark.sways = read_cubics(node, "sway", "ds");
+    return mark;
+  }
+
   LaneSpec read_lane(const pugi::xml_node& node) {
     LaneSpec lane;
     lane.id = static_cast<int>(number(node, "id", 1000.0));
@@ -168,8 +183,7 @@ class DocumentReader {
     lane.widths = read_cubics(node, "width", "sOffset");
     lane.borders = read_cubics(node, "border", "sOffset");
     for (const pugi::xml_node& mark : node.children("roadMark")) {
-      lane.marks.push_back(
-          {number(mark, "sOffset", kLargestNumber, 0.0), mark.attribute("type").value()});
+      lane.marks.push_back(read_mark(mark));
     }
     std::ranges::stable_sort(lane.marks, {}, &RoadMark::start_m);
     lane.speed_mps = read_speed(node);
@@ -206,7 +220,19 @@ class DocumentReader {
     return section;
   }
 
+  /// Reads an object. A number of a crosswalk must be right. Of another object, which the map may
+  /// not need, a wrong number is only noted.
   RoadObject read_object(const pugi::xml_node& node) {
+    const bool was_right = !error_;
+    RoadObject object = read_any_object(node);
+    if (was_right && error_ && !is_crosswalk(object)) {
+      object.fault = std::move(error_->message);
+      error_.reset();
+    }
+    return object;
+  }
+
+  RoadObject read_any_object(const pugi::xml_node& node) {
     RoadObject object;
     object.id = node.attribute("id").value();
     object.name = node.attribute("name").value();
@@ -287,6 +313,7 @@ class DocumentReader {
     }
     if (road.sections.empty()) reject(node, "no <laneSection>", "at least one");
     join_sections(lanes, road);
+    snap_lane_offsets(road);
     for (const pugi::xml_node& object : node.child("objects").children("object")) {
       road.objects.push_back(read_object(object));
     }

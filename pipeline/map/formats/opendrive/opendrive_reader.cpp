@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "pipeline/map/formats/opendrive/asphalt.h"
 #include "pipeline/map/formats/opendrive/document.h"
 #include "pipeline/map/formats/opendrive/section_lines.h"
@@ -22,6 +24,10 @@ namespace od = opendrive;
 constexpr double kNarrowLane_m = 1.5;
 /// Points this close to a line are left out of it.
 constexpr double kTolerance_m = 0.01;
+/// Maps of a UTM zone are nearer than this to its meridian.
+constexpr double kFarFromMeridian_m = 400'000.0;
+/// Maps of a country that uses one zone everywhere are nearer than this to its meridian.
+constexpr double kFarthestFromMeridian_m = 1'000'000.0;
 /// This is more points than any map has (200 bytes each).
 constexpr size_t kMostPoints = 10'000'000;
 /// This is more repeated crossings than any map has.
@@ -61,7 +67,7 @@ constexpr double kSameBorderShare = 0.95;
 /// The lines that were taken, by class.
 using TakenLines = std::array<LineNeighbours, 3>;
 
-/// Collects pieces of one border that are of the same kind, and adds them as lines.
+/// Collects consecutive pieces of one border that are of the same kind, and adds them as lines.
 class BorderRun {
  public:
   BorderRun(MapBuilder& builder, TakenLines& taken, std::string where)
@@ -72,7 +78,8 @@ class BorderRun {
 
   void add(const std::string& kind, const std::optional<Meaning>& meaning, std::string_view why,
            const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-    if (kind != kind_ || meaning != meaning_ || why != why_) {
+    const bool goes_on = !line_.empty() && (from - line_.back()).head<2>().norm() <= kTolerance_m;
+    if (!goes_on || kind != kind_ || meaning != meaning_ || why != why_) {
       flush();
       kind_ = kind;
       meaning_ = meaning;
@@ -152,7 +159,9 @@ class OpendriveReader {
     }
     link_successors(builder_.lanes());
     for (const od::Road& road : document_.roads) {
-      for (const od::RoadObject& object : road.objects) add_object(road, object);
+      for (const od::RoadObject& object : road.objects) {
+        if (Status status = add_object(road, object); !status) return status;
+      }
     }
     return {};
   }
@@ -162,7 +171,7 @@ class OpendriveReader {
     const bool has_reference =
         document_.georeference.find_first_not_of(" \t\r\n") != std::string::npos;
     if (has_reference && !options.origin) {
-      auto read = projection_from_proj(document_.georeference);
+      auto read = read_projection();
       if (!read) {
         // bevloc refuses an origin for coordinates that are far from (0, 0).
         const bool may_have_origin = is_near_origin(builder_.middle());
@@ -172,17 +181,40 @@ class OpendriveReader {
             document_.file, document_.georeference_line, read.error().message,
             may_have_origin ? "--origin LATITUDE,LONGITUDE takes its place; or " : "");
       }
-      if (*read) {
-        projection =
-            moved_projection(std::move(*read), document_.offset, document_.offset_heading_rad);
-      } else {
-        builder_.remark("the geoReference is longlat, which does not define a plane in metres");
-      }
+      projection = std::move(*read);
     }
     return builder_.finish(name, std::move(projection));
   }
 
  private:
+  /// The plane of the file's coordinates, or null if the geoReference names none. The error says
+  /// what is wrong, without a place.
+  Result<std::unique_ptr<Projection>> read_projection() {
+    auto read = projection_from_proj(document_.georeference);
+    if (!read) return read;
+    if (!*read) {
+      builder_.remark("the geoReference is longlat, which does not define a plane in metres");
+      return nullptr;
+    }
+    const Eigen::Vector2d middle =
+        Eigen::Rotation2Dd(document_.offset_heading_rad) * builder_.middle() + document_.offset;
+    const double apart_m = (*read)->distance_from_meridian_m(middle);
+    if (!builder_.is_empty() && apart_m > kFarFromMeridian_m) {
+      const std::string found = fmt::format(
+          "the middle of the map at ({:.0f}, {:.0f}) m, which is {:.0f} km from the "
+          "meridian of the projection",
+          middle.x(), middle.y(), apart_m / 1000.0);
+      if (is_near_origin(middle) || apart_m > kFarthestFromMeridian_m) {
+        return fail(
+            "found {}, wanted at most {:g} km; add the missing <offset>, or correct the "
+            "geoReference",
+            found, kFarFromMeridian_m / 1000.0);
+      }
+      builder_.remark("the geoReference puts " + found + "; look whether that is right");
+    }
+    return moved_projection(std::move(*read), document_.offset, document_.offset_heading_rad);
+  }
+
   void add_borders(const od::CutSection& cut) {
     const auto& lanes = cut.section->lanes;
     for (size_t border = 0; border <= lanes.size(); ++border) {
@@ -210,8 +242,9 @@ class OpendriveReader {
     const std::string left = cut.type_from(static_cast<std::ptrdiff_t>(border), 1, piece);
     const std::string right = cut.type_from(static_cast<std::ptrdiff_t>(border) - 1, -1, piece);
     const double middle_m = 0.5 * (cut.lines.along_m[piece] + cut.lines.along_m[piece + 1]);
-    const std::string mark(od::mark_at(owner, middle_m - cut.section->start_m));
-    const auto of_mark = meaning_of_mark_type(mark);
+    const od::RoadMark* mark = od::mark_at(owner, middle_m - cut.section->start_m);
+    const std::string type = mark == nullptr || mark->type.empty() ? "none" : mark->type;
+    const auto of_mark = meaning_of_mark_type(type);
     const bool left_paved = od::is_paved(left);
     const bool right_paved = od::is_paved(right);
     const bool is_kerb = of_mark && of_mark->element_class == ElementClass::kRoadBoundary;
@@ -237,7 +270,9 @@ class OpendriveReader {
               to);
       return;
     }
-    run.add("road mark " + (mark.empty() ? "none" : mark), of_mark, "not painted", from, to);
+    const auto [paint_from, paint_to] =
+        mark == nullptr ? std::pair(from, to) : cut.paint(*mark, border, piece);
+    run.add("road mark " + type, of_mark, "not painted", paint_from, paint_to);
   }
 
   void add_lanes(const od::CutSection& cut) {
@@ -273,12 +308,19 @@ class OpendriveReader {
     return points;
   }
 
-  void add_object(const od::Road& road, const od::RoadObject& object) {
+  Status add_object(const od::Road& road, const od::RoadObject& object) {
     const bool is_crossing = od::is_crosswalk(object);
     const std::string kind =
         is_crossing ? "object crosswalk" : "object " + (object.type.empty() ? "-1" : object.type);
     std::optional<Meaning> meaning;
     if (is_crossing) meaning = Meaning{ElementClass::kPedestrianCrossing, Appearance::kUnknown};
+    const std::string where = fmt::format("object {} (line {})", object.id, object.line);
+    if (!object.fault.empty()) {
+      if (builder_.meaning_of(kind, meaning)) return fail("{}", object.fault);
+      builder_.leave_out(object.fault);
+      builder_.drop(kind, where, "a bad number", 0.0);
+      return {};
+    }
     std::vector<od::RoadObject> copies = od::copies_of(object);
     if (copies.size() > 1) copies_ += copies.size();
     if (copies.empty() || (copies.size() > 1 && copies_ > kMostCopiesInAll)) {
@@ -286,7 +328,6 @@ class OpendriveReader {
                 "a <repeat> that is not read, wanted a distance, few copies and no cornerRoad");
       copies = {object};
     }
-    const std::string where = fmt::format("object {} (line {})", object.id, object.line);
     for (const od::RoadObject& copy : copies) {
       for (const od::Outline& outline : od::outlines_of(copy)) {
         if (is_crossing && !is_on_road(road, copy, outline.corners)) continue;
@@ -294,6 +335,7 @@ class OpendriveReader {
                      od::points_of(road, copy, outline));
       }
     }
+    return {};
   }
 
   /// Reports the corners of a crossing that lie where the road has no reference line. Returns false

@@ -12,16 +12,19 @@ namespace bevloc {
 /// - Road boundaries: borders between a paved lane (driving, shoulder, parking and so on) and one
 ///   that is not (sidewalk, none, median and so on) or no lane, unless another road's paved lanes
 ///   continue there, as in junctions; and road marks of type curb, grass and edge.
-/// - Lane dividers: other road marks, by their type.
+/// - Lane dividers: other road marks, by their type, at the mean tOffset of their lines and their
+///   sway from the border of the lane.
 /// - Pedestrian crossings: objects of type crosswalk, or without a type and with a name that says
 ///   so, and their copies, by their outlines, or by length and width.
 /// - Lanes: lanes on which vehicles drive, one for each lane section.
 ///
 /// Heights are those of the elevation profile; without a profile there are none. The place on earth
 /// comes from the header's geoReference (projection.h) with its offset. HdMap::left_out names parts
-/// that are lost because a road contradicts itself, such as gaps in its reference line. Fails as
-/// parse_document() does, and with file and line on a geoReference that cannot be read, unless the
-/// options give an origin.
+/// that are lost because a road contradicts itself, such as gaps in its reference line, and unused
+/// objects with bad numbers. Fails as parse_document() does, on a bad number of an object that a
+/// class table takes, and, unless the options give an origin, with file and line on a geoReference
+/// that cannot be read or from whose meridian the map is too far away. In a report, a remark says
+/// if it is more than 400 km away.
 Result<ImportedMap> parse_opendrive(std::string_view text, const std::filesystem::path& file,
                                     const ImportOptions& options);
 

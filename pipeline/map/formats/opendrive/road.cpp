@@ -139,9 +139,14 @@ void take_over(const LaneSection& before, LaneSection& section) {
 
 }  // namespace
 
-double value_at(const Cubics& cubics, double s_m) {
-  const auto next = std::ranges::upper_bound(cubics, s_m, {}, &Cubic::start_m);
+double value_at(const Cubics& cubics, double s_m, bool from_before) {
+  const auto next = from_before ? std::ranges::lower_bound(cubics, s_m, {}, &Cubic::start_m)
+                                : std::ranges::upper_bound(cubics, s_m, {}, &Cubic::start_m);
   return next == cubics.begin() ? 0.0 : std::prev(next)->at(s_m);
+}
+
+double RoadMark::left_of_border_m(double along_m, bool from_before) const {
+  return offset_m + value_at(sways, along_m - start_m, from_before);
 }
 
 void place_knots(Geometry& geometry) {
@@ -220,6 +225,18 @@ void complete_sides(std::vector<LaneSection>& sections) {
     }
   }
   sections = std::move(whole);
+}
+
+void snap_lane_offsets(Road& road) {
+  constexpr double kSamePlace_m = 0.005;
+  std::vector<double> ends;
+  for (const LaneSection& section : road.sections) ends.push_back(section.start_m);
+  if (!road.sections.empty()) ends.push_back(road.sections.back().end_m);
+  std::ranges::sort(ends);
+  for (Cubic& offset : road.lane_offsets) {
+    const auto end = std::ranges::lower_bound(ends, offset.start_m - kSamePlace_m);
+    if (end != ends.end() && *end <= offset.start_m + kSamePlace_m) offset.start_m = *end;
+  }
 }
 
 std::vector<std::string> faults_of(const Road& road, std::string_view file) {

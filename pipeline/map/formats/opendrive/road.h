@@ -29,8 +29,9 @@ struct Cubic {
 /// Cubics in the order of their starts; each is valid up to the next.
 using Cubics = std::vector<Cubic>;
 
-/// The value at s, or 0 if no cubic begins at or before s.
-double value_at(const Cubics& cubics, double s_m);
+/// The value at s, or 0 if no cubic begins at or before s. Where a cubic begins, it is the value of
+/// this cubic, unless `from_before`.
+double value_at(const Cubics& cubics, double s_m, bool from_before = false);
 
 /// One piece of the reference line. Lengths are in m, angles in rad, and curvatures in 1/m.
 struct Geometry {
@@ -78,6 +79,12 @@ LinePose pose_along(const Geometry& geometry, double along_m);
 struct RoadMark {
   double start_m = 0.0;  ///< counted from the start of the lane section
   std::string type;
+  double offset_m = 0.0;  ///< mean offset of its lines from the border, positive to the left
+  Cubics sways{};         ///< further offsets to the left, counted from the start of the mark
+
+  /// How far the paint lies to the left of the border, `along_m` after the section's start. Where a
+  /// sway begins, it is the value of this sway, unless `from_before`.
+  double left_of_border_m(double along_m, bool from_before) const;
 };
 
 struct LaneSpec {
@@ -135,6 +142,7 @@ struct RoadObject {
   double width_m = 0.0;
   std::vector<Outline> outlines;
   std::vector<Repeat> repeats;  ///< repetitions, read for crosswalks only
+  std::string fault{};          ///< why one of its numbers cannot be read, or ""
 };
 
 /// Whether the type of an object says that it is a crosswalk. If it has no type, its name counts.
@@ -168,6 +176,10 @@ std::vector<Stretch> stretches_of(const Road& road);
 
 /// Adds the other side to single-sided sections. `sections` must be in the order of their starts.
 void complete_sides(std::vector<LaneSection>& sections);
+
+/// Moves the start of each lane offset that lies within 5 mm of the start or end of a lane section
+/// to it. The sections must have their ends.
+void snap_lane_offsets(Road& road);
 
 /// The parts of a road that are lost because the file is wrong there, as sentences with file, line,
 /// road and s.

@@ -22,7 +22,11 @@ std::vector<double> changes_in(const Road& road, const LaneSection& section, con
     for (const Cubics* cubics : {&lane.widths, &lane.borders}) {
       for (const Cubic& cubic : *cubics) at.push_back(section.start_m + cubic.start_m);
     }
-    for (const RoadMark& mark : lane.marks) at.push_back(section.start_m + mark.start_m);
+    for (const RoadMark& mark : lane.marks) {
+      const double mark_m = section.start_m + mark.start_m;
+      at.push_back(mark_m);
+      for (const Cubic& sway : mark.sways) at.push_back(mark_m + sway.start_m);
+    }
   }
   std::erase_if(at, [&](double s) { return s < part.start_m || s > part.end_m; });
   std::ranges::sort(at);
@@ -32,19 +36,36 @@ std::vector<double> changes_in(const Road& road, const LaneSection& section, con
   return at;
 }
 
-/// The lateral position of the outer border of a lane, beyond `inner_m`.
-double outer_border(const LaneSpec& lane, double along_m, double inner_m, double offset_m) {
+/// The values of s between the pieces of a part of a section.
+std::vector<double> cuts_of(const Road& road, const LaneSection& section, const Stretch& part) {
+  const std::vector<double> changes = changes_in(road, section, part);
+  std::vector<double> cuts;
+  for (size_t i = 0; i + 1 < changes.size(); ++i) {
+    const double span_m = changes[i + 1] - changes[i];
+    const auto pieces = static_cast<int>(std::max(1.0, std::ceil(span_m / kSpacing_m)));
+    for (int piece = 0; piece < pieces; ++piece) {
+      cuts.push_back(changes[i] + span_m * piece / pieces);
+    }
+  }
+  if (!cuts.empty()) cuts.push_back(changes.back());
+  return cuts;
+}
+
+/// The lateral position of the outer border of a lane, beyond `inner_m`. At the end of a part of
+/// the section (`is_end`), formulas that begin there do not count.
+double outer_border(const LaneSpec& lane, double along_m, double inner_m, double offset_m,
+                    bool is_end) {
   const double side = lane.id > 0 ? 1.0 : -1.0;
   if (lane.widths.empty() && !lane.borders.empty()) {
     // Files disagree about the sign on the right side.
-    return offset_m + side * std::abs(value_at(lane.borders, along_m));
+    return offset_m + side * std::abs(value_at(lane.borders, along_m, is_end));
   }
-  return inner_m + side * std::max(0.0, value_at(lane.widths, along_m));
+  return inner_m + side * std::max(0.0, value_at(lane.widths, along_m, is_end));
 }
 
-double height_at(const Road& road, double s_m) {
+double height_at(const Road& road, double s_m, bool is_end = false) {
   if (road.elevations.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return value_at(road.elevations, s_m);
+  return value_at(road.elevations, s_m, is_end);
 }
 
 }  // namespace
@@ -52,6 +73,17 @@ double height_at(const Road& road, double s_m) {
 double CutSection::width_m(size_t lane, size_t piece) const {
   return std::max(lines.lateral_m[lane + 1][piece] - lines.lateral_m[lane][piece],
                   lines.lateral_m[lane + 1][piece + 1] - lines.lateral_m[lane][piece + 1]);
+}
+
+std::pair<Eigen::Vector3d, Eigen::Vector3d> CutSection::paint(const RoadMark& mark, size_t border,
+                                                              size_t piece) const {
+  const auto end_of_paint = [&](size_t at, bool is_end) {
+    Eigen::Vector3d point = lines.borders[border][at];
+    const double along_m = lines.along_m[at] - section->start_m;
+    point.head<2>() += mark.left_of_border_m(along_m, is_end) * lines.lefts[at];
+    return point;
+  };
+  return {end_of_paint(piece, false), end_of_paint(piece + 1, true)};
 }
 
 std::string CutSection::type_from(std::ptrdiff_t lane, int step, size_t piece) const {
@@ -106,16 +138,7 @@ Eigen::Vector3d point_at(const Road& road, double s_m, double t_m) {
 
 SectionLines lines_of(const Road& road, const LaneSection& section, const Stretch& part) {
   SectionLines lines;
-  const std::vector<double> changes = changes_in(road, section, part);
-  for (size_t i = 0; i + 1 < changes.size(); ++i) {
-    const double span_m = changes[i + 1] - changes[i];
-    const auto pieces = static_cast<int>(std::max(1.0, std::ceil(span_m / kSpacing_m)));
-    for (int piece = 0; piece < pieces; ++piece) {
-      lines.along_m.push_back(changes[i] + span_m * piece / pieces);
-    }
-  }
-  if (!lines.along_m.empty()) lines.along_m.push_back(changes.back());
-
+  lines.along_m = cuts_of(road, section, part);
   const auto center = static_cast<size_t>(std::ranges::find(section.lanes, 0, &LaneSpec::id) -
                                           section.lanes.begin());
   const size_t count = section.lanes.size() + 1;
@@ -123,20 +146,23 @@ SectionLines lines_of(const Road& road, const LaneSection& section, const Stretc
   lines.lateral_m.resize(count);
   std::vector<double> lateral(count);
   for (const double s : lines.along_m) {
+    const bool is_end = s == lines.along_m.back();
     const double along_m = s - section.start_m;
-    const double offset_m = value_at(road.lane_offsets, s);
+    const double offset_m = value_at(road.lane_offsets, s, is_end);
     lateral[center] = lateral[center + 1] = offset_m;
     for (size_t lane = center; lane-- > 0;) {
-      lateral[lane] = outer_border(section.lanes[lane], along_m, lateral[lane + 1], offset_m);
+      lateral[lane] =
+          outer_border(section.lanes[lane], along_m, lateral[lane + 1], offset_m, is_end);
     }
     for (size_t lane = center + 1; lane < section.lanes.size(); ++lane) {
-      lateral[lane + 1] = outer_border(section.lanes[lane], along_m, lateral[lane], offset_m);
+      lateral[lane + 1] =
+          outer_border(section.lanes[lane], along_m, lateral[lane], offset_m, is_end);
     }
-    const LinePose pose = road.pose_at(s, part.jump_m > 0.0 && s == part.end_m);
-    const Eigen::Vector2d left(-std::sin(pose.heading_rad), std::cos(pose.heading_rad));
-    const double height_m = height_at(road, s);
+    const LinePose pose = road.pose_at(s, part.jump_m > 0.0 && is_end);
+    lines.lefts.emplace_back(-std::sin(pose.heading_rad), std::cos(pose.heading_rad));
+    const double height_m = height_at(road, s, is_end);
     for (size_t border = 0; border < count; ++border) {
-      const Eigen::Vector2d point = pose.position + lateral[border] * left;
+      const Eigen::Vector2d point = pose.position + lateral[border] * lines.lefts.back();
       lines.borders[border].emplace_back(point.x(), point.y(), height_m);
       lines.lateral_m[border].push_back(lateral[border]);
     }
@@ -158,9 +184,9 @@ bool is_paved(std::string_view lane_type) {
   return is_driven(lane_type) || std::ranges::find(kTypes, lane_type) != kTypes.end();
 }
 
-std::string_view mark_at(const LaneSpec& lane, double along_m) {
+const RoadMark* mark_at(const LaneSpec& lane, double along_m) {
   const auto next = std::ranges::upper_bound(lane.marks, along_m, {}, &RoadMark::start_m);
-  return next == lane.marks.begin() ? "none" : std::string_view(std::prev(next)->type);
+  return next == lane.marks.begin() ? nullptr : &*std::prev(next);
 }
 
 }  // namespace bevloc::opendrive

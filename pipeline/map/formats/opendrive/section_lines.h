@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pipeline/map/formats/map_builder.h"
@@ -20,6 +21,9 @@ struct SectionLines {
 
   /// The lateral position (t) of each border, with one value per value of along_m.
   std::vector<std::vector<double>> lateral_m;
+
+  /// Unit vectors to the left of the road, one per value of along_m.
+  std::vector<Eigen::Vector2d> lefts;
 };
 
 /// A lane that is narrower than this does not exist.
@@ -35,6 +39,10 @@ struct CutSection {
   /// The width of a lane at the wider end of a piece, or a negative one if its borders cross.
   double width_m(size_t lane, size_t piece) const;
 
+  /// The two ends of a piece of the paint of a mark, which belongs to a border.
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> paint(const RoadMark& mark, size_t border,
+                                                    size_t piece) const;
+
   /// The type of the first lane with a width, from `lane` on in one direction (`step` 1 or -1), or
   /// "none" if there is no such lane.
   std::string type_from(std::ptrdiff_t lane, int step, size_t piece) const;
@@ -44,7 +52,8 @@ struct CutSection {
 /// meet.
 Stretch part_of(const LaneSection& section, const Stretch& stretch);
 
-/// Cuts a part of a section at all places where a formula changes, and about every 0.5 m.
+/// Cuts a part of a section at all places where a formula changes, and about every 0.5 m. What
+/// begins at the end of the part, such as a lane offset of the next section, does not count.
 SectionLines lines_of(const Road& road, const LaneSection& section, const Stretch& part);
 
 /// The outlines of an object, or one from its length and width, or an empty one.
@@ -60,7 +69,7 @@ Eigen::Vector3d point_at(const Road& road, double s_m, double t_m);
 bool is_paved(std::string_view lane_type);
 bool is_driven(std::string_view lane_type);
 
-/// The type of the road mark at the outer border of a lane, `along_m` after the section's start.
-std::string_view mark_at(const LaneSpec& lane, double along_m);
+/// The road mark at the outer border of a lane, `along_m` after the section's start, or null.
+const RoadMark* mark_at(const LaneSpec& lane, double along_m);
 
 }  // namespace bevloc::opendrive

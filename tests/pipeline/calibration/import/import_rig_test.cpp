@@ -193,6 +193,35 @@ TEST(ImportRig, TheChainOfKalibrEndsAtTheVehicle) {
                  options, "wanted a rigid transform");
 }
 
+TEST(ImportRig, AChainMayStateTheInverseAndBeginAsAFileOfOpenCv) {
+  // OpenVINS writes such chains.
+  const Rig base = demo_rig();
+  const Se3 vehicle_from_front = base.cameras[1].vehicle_from_camera;
+  const Se3 right_from_front = base.cameras[2].vehicle_from_camera.inverse() * vehicle_from_front;
+  const Se3 vehicle_from_imu{Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+                             {0.8, 0.1, 0.6}};
+  const Se3 front_from_imu = vehicle_from_front.inverse() * vehicle_from_imu;
+  const std::string chain = kalibr_chain(front_from_imu, right_from_front);
+  const std::string inverse =
+      replaced(kalibr_chain(front_from_imu.inverse(), right_from_front), "T_cam_imu", "T_imu_cam");
+  RigImportOptions options = with_base();
+  options.our_names = {{"side", "front_right"}};
+  options.vehicle_from = {{"imu", vehicle_from_imu}};
+  for (const std::string& text : {chain, inverse}) {
+    for (const std::string head : {"", "%YAML:1.0\n", "%YAML:1.0\n---\n"}) {
+      const auto imported = import_rig({{"chain.yaml", head + text}}, options);
+      ASSERT_TRUE(imported) << head << imported.error().message;
+      for (const int camera : {1, 2}) {
+        const Se3& found = imported->rig.cameras[camera].vehicle_from_camera;
+        const Se3& wanted = base.cameras[camera].vehicle_from_camera;
+        EXPECT_TRUE(found.rotation.isApprox(wanted.rotation, 1e-6)) << head << camera;
+        EXPECT_TRUE(found.translation_m.isApprox(wanted.translation_m, 1e-6)) << head << camera;
+      }
+      EXPECT_EQ(imported->rig.cameras[1].intrinsics.fx_px, 510.0);
+    }
+  }
+}
+
 const std::string kSensors = R"([
 {"token": "s1", "channel": "CAM_FRONT", "modality": "camera"},
 {"token": "s2", "channel": "LIDAR_TOP", "modality": "lidar"}

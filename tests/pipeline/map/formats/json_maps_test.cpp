@@ -90,6 +90,30 @@ TEST(Argoverse2, TakesEachMarkOnceAndTheOutlineOfAllAreas) {
   EXPECT_TRUE(map.lanes[1].successors.empty()) << "lane 99 is not in the file";
 }
 
+TEST(Argoverse2, EdgesBesideATaperingLaneStayAndNoneCrossesALane) {
+  // Two lanes of 3.5 m; the right one tapers away from x = 40 to x = 100.
+  constexpr std::string_view kTaper = R"({
+ "lane_segments": {
+  "1": {"id": 1, "lane_type": "VEHICLE", "successors": [],
+   "left_lane_boundary": [{"x": 0, "y": 3.5}, {"x": 40, "y": 3.5}, {"x": 100, "y": 0}],
+   "right_lane_boundary": [{"x": 0, "y": 0}, {"x": 100, "y": 0}],
+   "left_lane_mark_type": "NONE", "right_lane_mark_type": "NONE"},
+  "2": {"id": 2, "lane_type": "VEHICLE", "successors": [],
+   "left_lane_boundary": [{"x": 0, "y": 7}, {"x": 100, "y": 7}],
+   "right_lane_boundary": [{"x": 0, "y": 3.5}, {"x": 40, "y": 3.5}, {"x": 100, "y": 0}],
+   "left_lane_mark_type": "NONE", "right_lane_mark_type": "NONE"}},
+ "pedestrian_crossings": {},
+ "drivable_areas": {"8": {"id": 8, "area_boundary": [{"x": 0, "y": 0}, {"x": 100, "y": 0},
+   {"x": 100, "y": 7}, {"x": 0, "y": 7}]}}})";
+  const auto imported = parse_imported(kTaper, "map.json", {});
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  ASSERT_EQ(count_of(imported->map, ElementClass::kRoadBoundary), 2);
+  for (const MapElement& edge : imported->map.elements) {
+    EXPECT_NEAR((edge.points.back() - edge.points.front()).norm(), 100.0, 1e-9);
+    EXPECT_EQ(edge.points.back().y(), edge.points.front().y());
+  }
+}
+
 TEST(Argoverse2, TheNameOfTheFileGivesTheCity) {
   EXPECT_EQ(parse_imported(kArgoverse, "log_map.json", {})->map.origin.latitude_deg, 0.0);
   const auto imported = parse_imported(kArgoverse, "log_map_archive_x____PIT_city_47896.json", {});
@@ -224,6 +248,29 @@ TEST(Geojson, ReadsForeignFeaturesWithAClassTable) {
   ASSERT_EQ(imported->map.elements.size(), 2U);
   const auto& points = imported->map.elements[0].points;
   EXPECT_NEAR((points[1] - points[0]).norm(), 73.2, 0.1) << "0.001 degrees at latitude 49";
+}
+
+TEST(Geojson, AForeignLaneIsAKindLikeAnyOther) {
+  constexpr std::string_view kLane = R"({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"class": "divider"}, "geometry": {"type": "LineString",
+     "coordinates": [[8.4, 49.0], [8.401, 49.0]]}},
+    {"type": "Feature", "properties": {"type": "lane", "left": 12}, "geometry": {"type":
+     "LineString", "coordinates": [[8.4, 49.001], [8.401, 49.001]]}}]})";
+  const auto imported = parse_imported(kLane, "f.geojson", {});
+  ASSERT_TRUE(imported.has_value()) << imported.error().message;
+  EXPECT_EQ(imported->map.elements.size(), 1U);
+  EXPECT_TRUE(imported->map.lanes.empty());
+  const auto rows = imported->report.rows();
+  const auto dropped = std::ranges::find(rows, "lane", &ImportRow::kind);
+  ASSERT_NE(dropped, rows.end());
+  EXPECT_EQ(dropped->why, "no class of bevloc");
+
+  const auto table = ClassTable::parse("rules:\n  - kind: lane\n    becomes: divider\n", "t.yaml");
+  ImportOptions options;
+  options.classes = &*table;
+  const auto ruled = parse_imported(kLane, "f.geojson", options);
+  ASSERT_TRUE(ruled.has_value()) << ruled.error().message;
+  EXPECT_EQ(ruled->map.elements.size(), 2U);
 }
 
 TEST(Geojson, ReadsCollectionsAndLeavesOutTheHolesOfCrossings) {

@@ -114,6 +114,33 @@ TEST(Placement, UtmNeedsItsZone) {
               HasSubstr("found +zone=61, wanted"));
 }
 
+TEST(Placement, UtmCoordinatesNearZeroAreRefused) {
+  for (const char* words :
+       {"+proj=utm +zone=32 +datum=WGS84", "+proj=utm +zone=32 +south +datum=WGS84",
+        "+proj=tmerc +lat_0=0 +lon_0=9 +x_0=3500000"}) {
+    EXPECT_THAT(error_of(road_from(0, 0, words), "utm.xodr"),
+                testing::AllOf(
+                    HasSubstr("utm.xodr:1: <geoReference>: found the middle of the map at ("),
+                    HasSubstr(" km from the meridian of the projection, wanted at most 400 km; add "
+                              "the missing <offset>"),
+                    HasSubstr("; --origin LATITUDE,LONGITUDE takes its place")))
+        << words;
+    EXPECT_EQ(error_of(road_from(0, 0, words), "utm.xodr", with_origin()), "");
+  }
+  EXPECT_THAT(error_of(road_from(3'456'000, 5'429'000, "+proj=utm +zone=32"), "utm.xodr"),
+              HasSubstr("add the missing <offset>"));
+}
+
+TEST(Placement, OneZoneMayServeAWholeCountry) {
+  // Norway uses zone 33 as far as its west coast.
+  const auto map =
+      parse_imported(road_from(-30'000, 6'700'000, "+init=epsg:25833"), "norway.xodr", {});
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_NEAR(map->map.origin.latitude_deg, 60.09, 0.02);
+  EXPECT_NEAR(map->map.origin.longitude_deg, 5.46, 0.02);
+  EXPECT_THAT(map->report.remarks(), Contains(HasSubstr("look whether that is right")));
+}
+
 TEST(Placement, AnOriginFarFromTheMapNeedsXToTheEast) {
   const auto remarks_from = [](double x_m) {
     const auto map = parse_imported(road_from(x_m, 0.0), "road.xodr", with_origin());
