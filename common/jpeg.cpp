@@ -2,6 +2,7 @@
 
 #include <turbojpeg.h>
 
+#include "common/jpeg_warning.h"
 #include "common/rgb_conversion.h"
 
 namespace bevloc {
@@ -62,9 +63,10 @@ Status JpegDecoder::open(std::string_view file, std::string_view place) {
 }
 
 Status JpegDecoder::decode(RgbImage& image) {
-  // A warning counts as an error: it means that data is corrupt or cut off and the rest is grey.
+  // Any other warning counts as an error: data is corrupt or cut off, and the rest is grey.
   if (tjDecompress2(decompressor_.get(), reinterpret_cast<const uint8_t*>(file_.data()),
-                    file_.size(), image.row(0), image.width, 0, image.height, TJPF_RGB, 0) != 0) {
+                    file_.size(), image.row(0), image.width, 0, image.height, TJPF_RGB, 0) != 0 &&
+      !is_harmless_warning(decompressor_.get(), file_)) {
     return damaged();
   }
   return {};

@@ -44,7 +44,8 @@ class JpegDecoder {
   int height_px() const { return height_px_; }
 
   /// Decodes the open file into `image`, which has its size, or its size divided by 2, 4 or 8 and
-  /// rounded up. Fails if the file is damaged or cut off. The pixels are then undefined.
+  /// rounded up. Fails if the file is damaged or cut off. The pixels are then undefined. Extra
+  /// bytes before a marker are no damage.
   Status decode(RgbImage& image);
 
  private:

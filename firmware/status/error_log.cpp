@@ -48,8 +48,6 @@ void ErrorLog::note_camera(int camera, const CameraSnapshot& snapshot, Time now)
   const auto count_camera = [&](std::string_view text, uint64_t total) {
     if (total > 0) count(fmt::format("camera {}: {}", kCameraNames[camera], text), total, now);
   };
-  count_camera("unreadable image, damaged JPEG or wrong size; check cable and bandwidth",
-               snapshot.unreadable);
   count_camera("damaged frame; check cable and bandwidth", snapshot.driver.damaged);
   count_camera("frame lost before the driver; check cable, bandwidth and the load of this machine",
                snapshot.driver.lost);

@@ -11,8 +11,8 @@
 namespace bevloc::firmware {
 
 /// Compares snapshots. When an error count grows for the first time in a minute, it logs the cause
-/// and what to do. Hot threads only count and never write a log line. Thread-bound: called from the
-/// supervising thread.
+/// and what to do. The stages count these errors and write no log line for them. Thread-bound:
+/// called from the supervising thread.
 class ErrorLog {
  public:
   void note(const Snapshot& snapshot, Time now);

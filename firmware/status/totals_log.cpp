@@ -20,9 +20,8 @@ void log_cameras(const std::array<CameraSnapshot, kCameraCount>& cameras) {
       spdlog::info("camera {}: failed {} times", kCameraNames[camera], counts.failures);
     }
     if (counts.unreadable > 0) {
-      spdlog::warn(
-          "camera {}: {} unreadable images (damaged JPEG or wrong size); check cable and bandwidth",
-          kCameraNames[camera], counts.unreadable);
+      spdlog::warn("camera {}: {} unreadable images; the log above gives the reason",
+                   kCameraNames[camera], counts.unreadable);
     }
   }
 }

@@ -5,6 +5,8 @@
 
 #include <turbojpeg.h>
 
+#include "common/jpeg_warning.h"
+
 namespace bevloc {
 namespace {
 
@@ -42,8 +44,10 @@ Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
   int subsampling = 0;
   int colours = 0;
   if (tjDecompressHeader3(decompressor, data, size, &width, &height, &subsampling, &colours) != 0) {
-    return fail("JPEG frame: found an unreadable header ({}), wanted a JPEG image",
-                tjGetErrorStr2(decompressor));
+    return fail(
+        "JPEG frame: found an unreadable header ({}), wanted a JPEG image; check cable and "
+        "bandwidth",
+        tjGetErrorStr2(decompressor));
   }
   if (width != width_px_ || height != height_px_) {
     return fail("JPEG frame: found {}x{} pixels, wanted {}x{} as in the calibration", width, height,
@@ -56,8 +60,10 @@ Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
   const bool is_known =
       layout.chroma_shift_x + layout.chroma_shift_y > 0 || subsampling == TJSAMP_444;
   if (colours != TJCS_YCbCr || !is_known) {
-    return fail("JPEG frame: found {}, wanted YCbCr 4:4:4, 4:2:2, 4:2:0 or 4:4:0",
-                colours == TJCS_GRAY ? "no colour" : "an unknown colour layout");
+    return fail(
+        "JPEG frame: found {}, wanted YCbCr 4:4:4, 4:2:2, 4:2:0 or 4:4:0; choose another format "
+        "of the camera",
+        colours == TJCS_GRAY ? "no colour" : "an unknown colour layout");
   }
 
   std::array<uint8_t*, 3> planes{};
@@ -68,12 +74,15 @@ Result<YuvLayout> MjpegDecoder::decode(const ImageView& jpeg) {
     planes[i] = planes_.get() + i * plane_size(to_width, to_height);
     strides[i] = tjPlaneWidth(i, to_width, subsampling);
   }
-  // A warning counts as an error: it means damaged or truncated data, with the rest of the image
-  // grey.
+  // Any other warning counts as an error: it means damaged or truncated data, with the rest of the
+  // image grey.
   if (tjDecompressToYUVPlanes(decompressor, data, size, planes.data(), to_width, strides.data(),
-                              to_height, 0) != 0) {
-    return fail("JPEG frame: found damaged data ({}), wanted a complete JPEG image",
-                tjGetErrorStr2(decompressor));
+                              to_height, 0) != 0 &&
+      !is_harmless_warning(decompressor, {reinterpret_cast<const char*>(data), size})) {
+    return fail(
+        "JPEG frame: found damaged data ({}), wanted a complete JPEG image; check cable and "
+        "bandwidth",
+        tjGetErrorStr2(decompressor));
   }
   layout.y = {planes[0], strides[0]};
   layout.u = {planes[1], strides[1]};

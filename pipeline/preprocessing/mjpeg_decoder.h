@@ -28,7 +28,7 @@ class MjpegDecoder {
   int reduced_height_px() const { return reduced(height_px_); }
 
   /// The result is valid until the next call. Fails unless `jpeg` is a complete colour JPEG (4:4:4,
-  /// 4:2:2, 4:2:0 or 4:4:0) of the right size.
+  /// 4:2:2, 4:2:0 or 4:4:0) of the right size. Extra bytes before a marker are no damage.
   Result<YuvLayout> decode(const ImageView& jpeg);
 
  private:

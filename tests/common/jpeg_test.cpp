@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/jpeg_markers.h"
+
 namespace bevloc {
 namespace {
 
@@ -45,6 +47,47 @@ TEST(JpegTest, DamagedAndCutFilesAreRefused) {
   const auto cut = decode_jpeg(std::string_view(jpeg).substr(0, jpeg.size() / 2), "camera front");
   ASSERT_FALSE(cut);
   EXPECT_TRUE(cut.error().message.starts_with("camera front: found a damaged JPEG"));
+}
+
+/// An image with four rows of blocks. USB cameras put such bytes before a marker.
+std::string with_extra_bytes_before(uint8_t marker) {
+  const test::RestartMarkers markers;
+  JpegEncoder encoder;
+  std::string jpeg(encoder.encode(slope(48, 64).view(), 95).value());
+  for (const int number : {0, 1, 2}) {
+    EXPECT_LT(test::place_of(test::restart_marker(number), jpeg), jpeg.size());
+  }
+  return jpeg.insert(test::place_of(marker, jpeg), 64, '\0');
+}
+
+TEST(JpegTest, ExtraBytesBeforeAMarkerAreNoDamage) {
+  const RgbImage image = slope(48, 64);
+  JpegEncoder encoder;
+  const RgbImage wanted = decode_jpeg(encoder.encode(image.view(), 95).value(), "plain").value();
+  for (const uint8_t marker :
+       {test::restart_marker(0), test::restart_marker(2), test::kEndMarker}) {
+    const auto decoded = decode_jpeg(with_extra_bytes_before(marker), "padded");
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(decoded->pixels, wanted.pixels);
+  }
+}
+
+/// libjpeg tells its first warning only, which is the one about the extra bytes.
+TEST(JpegTest, DamageAfterExtraBytesIsFound) {
+  const std::string jpeg = with_extra_bytes_before(test::restart_marker(0));
+  const auto place = [&jpeg](uint8_t marker) { return test::place_of(marker, jpeg); };
+  const size_t second = place(test::restart_marker(1));
+  const size_t third = place(test::restart_marker(2));
+  const size_t end = place(test::kEndMarker);
+  std::string without_third_row = jpeg;
+  without_third_row.erase(second, third - second);
+  std::string without_last_row = jpeg;
+  without_last_row.erase(third, end - third);
+  EXPECT_TRUE(decode_jpeg(jpeg, "whole"));
+  EXPECT_FALSE(decode_jpeg(jpeg.substr(0, third), "cut off"));
+  EXPECT_FALSE(decode_jpeg(jpeg.substr(0, end), "without its end marker"));
+  EXPECT_FALSE(decode_jpeg(without_third_row, "with a gap"));
+  EXPECT_FALSE(decode_jpeg(without_last_row, "too short"));
 }
 
 TEST(JpegTest, BayerIsRefused) {

@@ -132,6 +132,23 @@ TEST_F(StampStepsTest, AnOmittedPulseIsNoJumpOfACameraThatHasBecomeSlower) {
   for (int i = 0; i < 60; ++i) EXPECT_FALSE(frame({}, slower)) << i;
 }
 
+TEST_F(StampStepsTest, CountsEachJumpThereAndBack) {
+  EXPECT_EQ(steps_.jumps(), 0U);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(frame(milliseconds(-100)));
+  EXPECT_EQ(steps_.jumps(), 1U);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(frame(milliseconds(-200)));
+  EXPECT_EQ(steps_.jumps(), 2U);
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(frame());
+  EXPECT_EQ(steps_.jumps(), 3U);
+  steps_.reset();
+  EXPECT_EQ(steps_.jumps(), 3U);
+}
+
+TEST_F(StampStepsTest, FramesThatArriveLateAreNoJumps) {
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(frame({}, milliseconds(100 * i)));
+  EXPECT_EQ(steps_.jumps(), 0U);
+}
+
 TEST_F(StampStepsTest, ANewStartForgetsTheOffset) {
   EXPECT_TRUE(frame(milliseconds(-100)));
   steps_.reset();

@@ -1,5 +1,7 @@
 // Tests V4L2's names, colour encodings and image layouts, and the check for complete images.
 #include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -29,6 +31,34 @@ TEST(V4l2Formats, InterlacedImagesAreNotProgressive) {
     EXPECT_NE(field_name(field), field_name(V4L2_FIELD_NONE));
     EXPECT_NE(field_name(field), "unknown");
   }
+}
+
+TEST(V4l2Formats, AControlThatChangesTheLayoutIsFound) {
+  v4l2_pix_format negotiated{};
+  negotiated.pixelformat = V4L2_PIX_FMT_SRGGB8;
+  negotiated.width = 640;
+  negotiated.height = 360;
+  negotiated.bytesperline = 640;
+  negotiated.field = V4L2_FIELD_NONE;
+  EXPECT_TRUE(check_same_layout(negotiated, negotiated));
+  v4l2_pix_format flipped = negotiated;
+  flipped.pixelformat = V4L2_PIX_FMT_SGBRG8;
+  const Status changed = check_same_layout(negotiated, flipped);
+  ASSERT_FALSE(changed);
+  const std::string& message = changed.error().message;
+  EXPECT_NE(message.find("found the format GBRG 640x360"), std::string::npos) << message;
+  EXPECT_NE(message.find("wanted RGGB 640x360"), std::string::npos) << message;
+  v4l2_pix_format rotated = negotiated;
+  std::swap(rotated.width, rotated.height);
+  EXPECT_FALSE(check_same_layout(negotiated, rotated));
+  v4l2_pix_format padded = negotiated;
+  padded.bytesperline += 64;
+  EXPECT_FALSE(check_same_layout(negotiated, padded));
+  v4l2_pix_format interlaced = negotiated;
+  interlaced.field = V4L2_FIELD_INTERLACED;
+  EXPECT_FALSE(check_same_layout(negotiated, interlaced));
+  interlaced.field = V4L2_FIELD_ANY;
+  EXPECT_TRUE(check_same_layout(negotiated, interlaced)) << "counts as progressive";
 }
 
 TEST(V4l2Formats, ReadsTheColourEncodingOfTheDevice) {

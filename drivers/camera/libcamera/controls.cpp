@@ -1,5 +1,6 @@
 #include "drivers/camera/libcamera/controls.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -51,6 +52,7 @@ Status set_control(const libcamera::Camera& camera, const ControlSetting& settin
   for (const auto& [id, info] : camera.controls()) {
     names.push_back(id->name());
     if (id->name() != setting.name) continue;
+    if (is_list(*id)) return fail("control {} is a list, which cannot be set here", setting.name);
     if (!is_number(id->type())) return fail("control {} is not a number", setting.name);
     const bool is_whole =
         id->type() == libcamera::ControlTypeFloat || std::floor(setting.value) == setting.value;
@@ -69,6 +71,13 @@ Status set_control(const libcamera::Camera& camera, const ControlSetting& settin
 }
 
 }  // namespace
+
+bool is_known_list(std::string_view control) {
+  constexpr std::array<std::string_view, 5> kLists = {"AfWindows", "ColourCorrectionMatrix",
+                                                      "ColourGains", "FrameDurationLimits",
+                                                      "SensorBlackLevels"};
+  return std::ranges::find(kLists, control) != kLists.end();
+}
 
 Result<libcamera::ControlList> start_controls(const libcamera::Camera& camera,
                                               const DeviceCameraConfig& config) {

@@ -85,7 +85,8 @@ std::string control_word(std::string_view name) {
   return word;
 }
 
-Status set_controls(const Device& device, std::span<const ControlSetting> settings) {
+Status set_controls(const Device& device, std::span<const ControlSetting> settings,
+                    uint32_t flags) {
   if (settings.empty()) return {};
   const std::vector<v4l2_query_ext_ctrl> controls = controls_of(device);
   for (const ControlSetting& setting : settings) {
@@ -96,6 +97,7 @@ Status set_controls(const Device& device, std::span<const ControlSetting> settin
       return fail("{}: has no control {}; it has {}", device.name(), setting.name,
                   words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", ")));
     }
+    if ((control->flags & flags) != flags) continue;
     if (Status done = set(device, *control, setting.value); !done) return done;
   }
   return {};

@@ -102,6 +102,16 @@ Result<StreamFormat> negotiate_format(const Device& device, const DeviceCameraCo
               config.rate_hz > 0.0 ? fmt::format(" at {:.4g} Hz", config.rate_hz) : "");
 }
 
+Status check_kept_format(const Device& device, const StreamFormat& format) {
+  v4l2_format current{};
+  current.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  if (const int error = device.call(VIDIOC_G_FMT, &current)) {
+    return fail("{}: the format cannot be read: {}", device.name(), std::strerror(error));
+  }
+  const Status same = check_same_layout(format.pixels, current.fmt.pix);
+  return same ? same : fail("{}: {}", device.name(), same.error().message);
+}
+
 std::string offered_formats(const Device& device) {
   std::string text;
   v4l2_fmtdesc description{};

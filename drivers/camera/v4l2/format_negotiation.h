@@ -17,6 +17,9 @@ struct StreamFormat {
 /// interlaced video. The error lists what the device offers.
 Result<StreamFormat> negotiate_format(const Device& device, const DeviceCameraConfig& config);
 
+/// Fails if the device no longer has this format, because a control has changed it.
+Status check_kept_format(const Device& device, const StreamFormat& format);
+
 /// Lists all formats of the device: "YUYV 640x360 at 5, 10 Hz; MJPG 1280x720 at 30 Hz".
 std::string offered_formats(const Device& device);
 

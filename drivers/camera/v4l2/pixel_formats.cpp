@@ -3,6 +3,14 @@
 #include <cassert>
 
 namespace bevloc::drivers::v4l2 {
+namespace {
+
+std::string layout_of(const v4l2_pix_format& pixels) {
+  return fmt::format("{} {}x{} with {} bytes per row, {}", fourcc_name(pixels.pixelformat),
+                     pixels.width, pixels.height, pixels.bytesperline, field_name(pixels.field));
+}
+
+}  // namespace
 
 std::string fourcc_name(uint32_t fourcc) {
   std::string name;
@@ -64,6 +72,18 @@ std::string_view field_name(uint32_t field) {
     default:
       return "unknown";
   }
+}
+
+Status check_same_layout(const v4l2_pix_format& negotiated, const v4l2_pix_format& found) {
+  const bool is_same = found.pixelformat == negotiated.pixelformat &&
+                       found.width == negotiated.width && found.height == negotiated.height &&
+                       found.bytesperline == negotiated.bytesperline &&
+                       is_progressive(found.field) == is_progressive(negotiated.field);
+  if (is_same) return {};
+  return fail(
+      "found the format {} after the controls were set, wanted {} as negotiated before; state the "
+      "found format in the configuration, or remove the control that changes it",
+      layout_of(found), layout_of(negotiated));
 }
 
 YuvEncoding yuv_encoding(const v4l2_pix_format& pixels) {

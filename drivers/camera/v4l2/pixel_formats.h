@@ -8,6 +8,7 @@
 #include <linux/videodev2.h>
 
 #include "common/image_view.h"
+#include "common/result.h"
 
 namespace bevloc::drivers::v4l2 {
 
@@ -23,6 +24,11 @@ bool is_progressive(uint32_t field);
 
 /// Returns the name of a field order for messages, such as "interlaced".
 std::string_view field_name(uint32_t field);
+
+/// Fails if images of the two formats differ in pixel format, size, bytes per row or field order.
+/// `negotiated` is what the device agreed to, and `found` what it has after its controls were set:
+/// a flip may change the Bayer order, and a rotation swaps width and height.
+Status check_same_layout(const v4l2_pix_format& negotiated, const v4l2_pix_format& found);
 
 /// Returns how a device encodes YUV. Uses the defaults of videodev2.h for unspecified values.
 YuvEncoding yuv_encoding(const v4l2_pix_format& pixels);

@@ -40,10 +40,19 @@ Result<std::shared_ptr<v4l2::Stream>> V4l2Camera::open_stream() const {
   if (!node) return tl::unexpected(node.error());
   auto device = v4l2::Device::open(*node);
   if (!device) return tl::unexpected(device.error());
+  const auto& controls = config_.device.controls;
+  // Flips and rotations come first, because they decide which formats the device has.
+  if (Status set = v4l2::set_controls(**device, controls, V4L2_CTRL_FLAG_MODIFY_LAYOUT); !set) {
+    return tl::unexpected(set.error());
+  }
   const auto format = v4l2::negotiate_format(**device, config_.device);
   if (!format) return tl::unexpected(format.error());
-  if (Status set = v4l2::set_controls(**device, config_.device.controls); !set) {
+  if (Status set = v4l2::set_controls(**device, controls); !set) {
     return tl::unexpected(set.error());
+  }
+  if (!controls.empty()) {
+    const Status kept = v4l2::check_kept_format(**device, *format);
+    if (!kept) return tl::unexpected(kept.error());
   }
   return v4l2::Stream::open(std::move(*device), *format, config_.device.buffers, config_.memory);
 }

@@ -130,6 +130,16 @@ TEST(MockCamera, DarkBlindedDirtyTurnedAndMovedPicturesDifferOnlyDuringTheFault)
   }
 }
 
+TEST(MockCamera, ATurnedOrMovedCameraKeepsItsImageSensor) {
+  const auto good = first_images(camera_with(1, kNoFault), 2);
+  for (const FaultKind kind : {FaultKind::kCameraTurned, FaultKind::kCameraMoved}) {
+    sim::Fault hardly = make_fault(kind, 0.1);
+    hardly.amounts.yaw_deg = 1e-9;
+    hardly.amounts.y_m = 1e-12;
+    EXPECT_EQ(first_images(camera_with(1, hardly), 2)[1], good[1]) << info_of(kind).name;
+  }
+}
+
 TEST(MockCamera, DirtAndNoiseOfAFaultDependOnItsSeed) {
   for (const FaultKind kind :
        {FaultKind::kCameraDark, FaultKind::kCameraBlinded, FaultKind::kCameraDirty}) {

@@ -44,8 +44,8 @@ class CachedScenes : public testing::Test {
     return std::make_shared<MockScene>(world, drive, sim::Conditions{}, noise_seed,
                                        std::move(cache));
   }
-  static Pixels draw(MockScene& scene, const CameraModel& camera, int time_ms) {
-    RgbImage image(camera.intrinsics.width_px, camera.intrinsics.height_px);
+  static Pixels draw(MockScene& scene, const sim::MountedCamera& camera, int time_ms) {
+    RgbImage image(camera.now.intrinsics.width_px, camera.now.intrinsics.height_px);
     scene.draw(1, camera, std::chrono::milliseconds(time_ms), image);
     return image.pixels;
   }
@@ -73,10 +73,11 @@ TEST_F(CachedScenes, WhatDiffersIsDrawnAnew) {
   CameraModel turned = camera_;
   turned.vehicle_from_camera.translation_m.x() += 0.001;
   draw(*base, turned, 700);
+  draw(*base, {turned, camera_}, 700);
   draw(*scene(2006, 2, cache), camera_, 700);
   draw(*scene(2007, 1, cache), camera_, 700);
   EXPECT_EQ(cache->counters().found, 0U);
-  EXPECT_EQ(cache->counters().kept, 5U);
+  EXPECT_EQ(cache->counters().kept, 6U);
 }
 
 }  // namespace

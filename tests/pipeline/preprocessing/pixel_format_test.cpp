@@ -8,6 +8,7 @@
 #include "pipeline/preprocessing/image_remap.h"
 #include "tests/pipeline/preprocessing/camera_images.h"
 #include "tests/pipeline/preprocessing/surround_rig.h"
+#include "tests/support/jpeg_markers.h"
 
 namespace bevloc {
 namespace {
@@ -177,6 +178,30 @@ TEST(PixelFormats, RefuseADamagedJpeg) {
   EXPECT_FALSE(preprocessor.run(noise.view, planes));
   EXPECT_TRUE(preprocessor.run(test::jpeg_image(image, TJSAMP_420).view, planes))
       << "the next frame must work again";
+}
+
+/// Some USB cameras send such bytes with good images.
+TEST(PixelFormats, IgnoreExtraBytesBeforeAMarkerOfAJpeg) {
+  const test::RestartMarkers markers;
+  const test::CameraImage plain = test::jpeg_image(colourful(640, 360), TJSAMP_422);
+  ImagePreprocessor preprocessor(camera_of_size(640, 360));
+  Planes wanted(kNetworkImageSize);
+  ASSERT_TRUE(preprocessor.run(plain.view, wanted));
+  for (const uint8_t marker : {test::restart_marker(4), test::kEndMarker}) {
+    std::vector<uint8_t> bytes = plain.bytes;
+    const size_t place = test::place_of(marker, bytes);
+    ASSERT_LT(place, bytes.size());
+    bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(place), 64, uint8_t{0});
+    ImageView padded = plain.view;
+    padded.planes[0].data = bytes.data();
+    padded.bytes_used = bytes.size();
+    Planes planes(kNetworkImageSize);
+    const Status status = preprocessor.run(padded, planes);
+    ASSERT_TRUE(status) << status.error().message;
+    EXPECT_EQ(planes, wanted);
+    padded.bytes_used /= 2;
+    EXPECT_FALSE(preprocessor.run(padded, planes));
+  }
 }
 
 TEST(PixelFormats, RefuseAJpegOfTheWrongSize) {
