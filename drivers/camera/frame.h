@@ -19,6 +19,8 @@ struct Frame {
   /// Whether the time stamps of this camera have jumped (StampSteps), so that `time` is wrong.
   /// CaptureStage sets it.
   bool stamp_jumped = false;
+  /// How often they have jumped (StampSteps::jumps()). CaptureStage sets it, too.
+  uint64_t stamp_jumps = 0;
 
   /// The image in the format that the camera delivered.
   const ImageView& image() const { return buffer.view(); }

@@ -25,6 +25,7 @@ bool StampSteps::add(Time stamp, Time arrival, uint64_t sequence) {
   const Seen frame{stamp, arrival, sequence};
   if (latest_) judge(frame);
   add_lag(arrival - stamp);
+  count_jump();
   latest_ = frame;
   return std::chrono::abs(offset_) > kTolerated;
 }
@@ -74,6 +75,18 @@ void StampSteps::add_lag(Duration lag) {
   if (++doubt_->frames < kDoubtedFrames) return;
   usual_lag_ = doubt_->least_lag;
   doubt_.reset();
+}
+
+void StampSteps::count_jump() {
+  if (std::chrono::abs(offset_ - counted_offset_) <= kTolerated) return;
+  ++jumps_;
+  counted_offset_ = offset_;
+}
+
+void StampSteps::reset() {
+  const uint64_t jumps = jumps_;
+  *this = StampSteps();
+  jumps_ = jumps;
 }
 
 bool StampSteps::Doubt::is_disproved() const {

@@ -31,8 +31,11 @@ class StampSteps {
 
   Duration offset() const { return offset_; }
 
-  /// Forgets everything, because the camera starts again.
-  void reset() { *this = StampSteps(); }
+  /// How often the offset has changed by more than kTolerated. The count never decreases.
+  uint64_t jumps() const { return jumps_; }
+
+  /// Forgets everything but jumps(), because the camera starts again.
+  void reset();
 
  private:
   struct Seen {
@@ -54,12 +57,15 @@ class StampSteps {
   void judge(const Seen& frame);
   void add_jump(Duration jump);
   void add_lag(Duration lag);
+  void count_jump();
 
   std::optional<Seen> latest_;
   std::optional<Duration> period_;  ///< from one frame to the next
   Duration usual_lag_{0};           ///< the least lag of the latest frames
   std::optional<Doubt> doubt_;
   Duration offset_{0};
+  Duration counted_offset_{0};  ///< the offset after the latest counted jump
+  uint64_t jumps_ = 0;
 };
 
 }  // namespace bevloc::drivers

@@ -67,6 +67,7 @@ void ModelledVision::report(double time_s) {
   const Time arrival = drive_start_ + from_seconds(time_s + kLatency_s);
   report.stamps_jumped =
       stamp_steps_.add(report.frame_time, arrival, static_cast<uint64_t>(frame_));
+  report.stamp_jumps = stamp_steps_.jumps();
   if (const auto prior = priors_.at(frameset)) {
     report.had_prior = true;
     report.map_nearby = true;

@@ -117,7 +117,8 @@ bool run_appliance(Appliance& appliance, const Rig& rig, TriggerThread* trigger,
   const LiveView live_view(base.live.get(), appliance, rig);
   run_threads(appliance, base.realtime, nullptr, [&](Time now) {
     supervisor.step(now);
-    appliance.estimation().note_clock(clock_watch.step());
+    const uint64_t clock_gaps = appliance.estimation().counters().clock_gaps;
+    appliance.estimation().note_clock(clock_watch.step(), clock_gaps);
     log.note(supervisor.view(), now);
     const Snapshot counters = snapshot();
     errors.note(counters, now);

@@ -20,13 +20,11 @@ void restore_calibration(const Config& config, const Rig& rig, Localizer& locali
   std::error_code ignored;
   if (file.empty() || !std::filesystem::exists(file, ignored)) return;
   const auto learned = load_learned(file, rig_crc32(rig));
-  if (!learned) {
-    spdlog::warn("{}", learned.error().message);
-  } else if (!localizer.restore_calibration(learned->errors, learned->covariance)) {
-    spdlog::warn(
-        "{}: found learned errors of the calibration beyond their bounds, wanted smaller ones; "
-        "they are not used, and bevlocd learns them again",
-        file.string());
+  if (!learned) return spdlog::warn("{}", learned.error().message);
+  const Status restored = localizer.restore_calibration(learned->errors, learned->covariance);
+  if (!restored) {
+    spdlog::warn("{}: {}; they are not used, and bevlocd learns them again", file.string(),
+                 restored.error().message);
   }
 }
 

@@ -10,12 +10,15 @@
 namespace bevloc::firmware {
 
 bool HeartbeatWatch::hangs(Time now) {
+  // The deadline comes first. Otherwise the thread could beat in between, and the short deadline of
+  // that beat would be applied to the long time before it.
+  const Duration deadline = heartbeat_->deadline();
   const uint64_t count = heartbeat_->count();
   if (!moved_ || count != count_) {
     count_ = count;
     moved_ = now;
   }
-  return !heartbeat_->ended() && now - *moved_ > heartbeat_->deadline();
+  return !heartbeat_->ended() && now - *moved_ > deadline;
 }
 
 void Watchdog::watch_stages(const Appliance& appliance) {

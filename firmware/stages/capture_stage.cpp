@@ -51,6 +51,7 @@ void CaptureStage::note_frame(Time now, drivers::Frame& frame) {
   waiting_since_ = silent_since_ = now;
   patience_ = kLeastPatience;
   frame.stamp_jumped = stamp_steps_.add(frame.time, now, frame.sequence);
+  frame.stamp_jumps = stamp_steps_.jumps();
   constexpr std::string_view kJumped = "its time stamps jumped, but its frames arrive as before";
   if (frame.stamp_jumped && causes_.is_new(kJumped, now)) {
     spdlog::warn("camera {}: {}; check its clock and its driver, then restart bevlocd",

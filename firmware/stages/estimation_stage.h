@@ -78,11 +78,10 @@ class EstimationStage {
   /// stage.
   void watch(const VehicleInputStage& input) { vehicle_input_ = &input; }
 
-  /// Sets what the status tells about the clock from now on, until the next gap. Thread-bound:
-  /// called from the supervising thread.
-  void note_clock(const can::ClockReport& clock) {
-    clock_.store({clock, counters_.clock_gaps.load()});
-  }
+  /// Sets what the status tells about the clock from now on, until the next gap. `gaps` is
+  /// EstimationCounters::clock_gaps from before the clock was read. If there was a gap since, the
+  /// note has no effect. Thread-bound: called from the supervising thread.
+  void note_clock(const can::ClockReport& clock, uint64_t gaps) { clock_.store({clock, gaps}); }
 
   /// Takes all queued samples and reports, then publishes the pose predicted to the time at which
   /// it began. If the thread stood still or the machine was suspended meanwhile, it sends LOST,
@@ -102,7 +101,7 @@ class EstimationStage {
   /// What note_clock() was told. It holds as long as there are no further gaps.
   struct ClockNote {
     can::ClockReport clock;
-    uint64_t gaps = 0;  ///< EstimationCounters::clock_gaps at that time
+    uint64_t gaps = 0;  ///< EstimationCounters::clock_gaps before the clock was read
   };
 
   void take_samples();

@@ -1,6 +1,8 @@
 // Messages between the stages, and the queues that carry them.
 #pragma once
 
+#include <cstdint>
+
 #include "common/bounded_queue.h"
 #include "common/cameras.h"
 #include "common/se2.h"
@@ -25,6 +27,8 @@ struct VisionReport {
   bool unsynchronized = false;   ///< the cameras do not expose together (Synchrony)
   /// Whether the time stamps of most cameras have jumped (drivers::StampSteps).
   bool stamps_jumped = false;
+  /// How often the time stamps of most cameras have jumped so far, there and back.
+  uint64_t stamp_jumps = 0;
   bool network_fault = false;  ///< the network failed its check, so nothing was matched
   Se2 prior;                   ///< T0: map_from_vehicle at frame_time
   MatchResult match;

@@ -1,6 +1,8 @@
 // Watches whether the time stamps of the cameras fit the motion of the vehicle.
 #pragma once
 
+#include <cstdint>
+
 #include "common/time.h"
 #include "firmware/stages/messages.h"
 #include "pipeline/localization/stamp_monitor.h"
@@ -8,7 +10,10 @@
 namespace bevloc::firmware {
 
 /// Combines two sources: vision reports that the stamps jumped, and StampMonitor compares the
-/// headings of matches with the yaw rate. Allocates in the constructor only. One thread.
+/// headings of matches with the yaw rate. Stamps that jumped count as wrong until they jump back or
+/// bends show that they are right. If bends showed this, the stamps from before the jump were
+/// wrong, so a jump back makes them wrong again. Stamps that were wrong before a jump are still
+/// wrong after a jump back. Allocates in the constructor only. One thread.
 class StampWatch {
  public:
   /// Adds the vehicle's yaw rate.
@@ -27,13 +32,17 @@ class StampWatch {
   void note_gap();
 
  private:
-  void note_jump(bool jumped);
+  void note_jump(const VisionReport& report);
+  void note_jump_back();
   void compare_heading(const VisionReport& report);
 
   /// Tolerates 30 ms, because the yaw rate of a sensor is itself late by some 10 ms.
   StampMonitor monitor_{std::chrono::milliseconds(30)};
   bool latest_jumped_ = false;  ///< what the latest report says
+  uint64_t jumps_ = 0;          ///< VisionReport::stamp_jumps so far
   bool jumped_ = false;         ///< the stamps jumped, and no bend has confirmed them since
+  /// While vision reports a jump: whether the stamps are wrong when they jump back.
+  bool wrong_before_ = false;
 };
 
 }  // namespace bevloc::firmware

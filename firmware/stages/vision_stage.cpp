@@ -1,7 +1,9 @@
 #include "firmware/stages/vision_stage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -26,6 +28,25 @@ CameraMask with_jumped_stamps(const drivers::Frameset& frameset) {
     jumped[camera] = frameset.present[camera] && frameset.frames[camera].stamp_jumped;
   }
   return jumped;
+}
+
+/// The lower median over the cameras: more than half of them have jumped at least as often.
+uint64_t stamp_jumps_of_most(const drivers::Frameset& frameset) {
+  std::array<uint64_t, kCameraCount> jumps{};
+  auto end = jumps.begin();
+  for (int camera = 0; camera < kCameraCount; ++camera) {
+    if (frameset.present[camera]) *end++ = frameset.frames[camera].stamp_jumps;
+  }
+  if (end == jumps.begin()) return 0;
+  const auto median = jumps.begin() + (end - jumps.begin() - 1) / 2;
+  std::nth_element(jumps.begin(), median, end);
+  return *median;
+}
+
+/// The part of an error that is the same for every image with the same cause. The numbers, and what
+/// libjpeg says in parentheses, may differ from image to image.
+std::string_view cause_of(std::string_view error) {
+  return error.substr(0, error.find_first_of("(0123456789"));
 }
 
 /// Leaves out some frames. Frameset::time becomes that of the earliest frame that remains, and
@@ -97,9 +118,15 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
   // A frame with a wrong stamp would be matched with the wrong pose. If most time stamps have
   // jumped, the frames are matched, and the tracker has to find out whether the stamps are right.
   report.stamps_jumped = most_stamps_jumped(frameset);
+  report.stamp_jumps = stamp_jumps_of_most(frameset);
   if (!report.stamps_jumped) leave_out(jumped_, frameset);
   report.frame_time = frameset.time;
   report.present = frameset.present;
+  // These hold also if nothing can be matched now.
+  if (const OnlineCalibration* learned = localizer_.online_calibration()) {
+    report.calibration_fault = learned->faults();
+    report.present &= ~learned->left_out();
+  }
   report.skipped = newest.skipped;
   report.unsynchronized = newest.unsynchronized;
   if (counters_.network_fault) {
@@ -144,7 +171,7 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
     report.calibration_fault = learned->faults();
     counters_.calibration_fault = static_cast<unsigned>(learned->faults().to_ulong());
   }
-  note_unused_images(frameset.present);
+  note_unused_images(frameset);
   if (static_cast<int>(report.present.count()) < min_cameras_) {
     ++counters_.refused;
     return;
@@ -177,12 +204,16 @@ void VisionStage::check_network_again(const drivers::Frameset& frameset, const P
   check_network();
 }
 
-void VisionStage::note_unused_images(CameraMask given) {
+void VisionStage::note_unused_images(const drivers::Frameset& frameset) {
   // If the image of a camera cannot be read, nobody knows what the camera shows.
   const CameraMask readable = localizer_.readable();
-  const CameraMask unreadable = given & ~readable;
+  const CameraMask unreadable = frameset.present & ~readable;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    if (unreadable[camera]) ++counters_.unreadable[camera];
+    if (!unreadable[camera]) continue;
+    ++counters_.unreadable[camera];
+    const std::string& error = localizer_.read_error(camera);
+    if (!causes_[camera].is_new(cause_of(error), frameset.time)) continue;
+    spdlog::warn("camera {}: unreadable image: {}", kCameraNames[camera], error);
   }
   const auto shown = [&readable](CameraMask mask) {
     return static_cast<unsigned>((mask & readable).to_ulong());

@@ -12,6 +12,7 @@
 #include "firmware/stages/frameset_source.h"
 #include "firmware/stages/messages.h"
 #include "firmware/stages/prior_source.h"
+#include "firmware/telemetry/cause_log.h"
 #include "pipeline/localization/localizer.h"
 
 namespace bevloc::firmware {
@@ -45,8 +46,8 @@ struct VisionCounters {
   std::atomic<uint64_t> frames_used{0};  ///< frames in those framesets
   std::atomic<uint64_t> no_prior{0};     ///< framesets whose time no prediction covered
   std::atomic<uint64_t> refused{0};      ///< framesets with fewer usable images than min_cameras
-  /// Unreadable images of each camera, because of a wrong size or a damaged JPEG. Their frames
-  /// count as used.
+  /// Unreadable images of each camera: of a wrong size, or a JPEG that is damaged or has no colour.
+  /// Their frames count as used.
   std::array<std::atomic<uint64_t>, kCameraCount> unreadable{};
   /// The cameras whose images are not used, each a CameraMask (FrozenCameraDetector, ViewMonitor).
   std::atomic<unsigned> frozen{0};
@@ -95,7 +96,8 @@ class VisionStage {
   /// Checks network and solvers. Logs why a check failed.
   void check_network();
   void check_network_again(const drivers::Frameset& frameset, const Prior& prior);
-  void note_unused_images(CameraMask given);
+  /// Counts the unused images of a frameset, and logs why an image could not be read.
+  void note_unused_images(const drivers::Frameset& frameset);
 
   Localizer& localizer_;
   const int min_cameras_;
@@ -106,6 +108,7 @@ class VisionStage {
   std::vector<VisionObserver> observers_;
   const std::function<std::span<const float>()> perceived_mask_;
   VisionCounters counters_;
+  std::array<CauseLog, kCameraCount> causes_;  ///< why images could not be read
   CameraMask jumped_;          ///< cameras of the latest two framesets whose time stamps jumped
   CameraMask latest_present_;  ///< cameras of the latest frameset
   Time latest_check_ = Time::min();

@@ -19,15 +19,17 @@ class Heartbeat {
 
   /// The next beat follows within `deadline`.
   void beat(Duration deadline = kDeadline) {
-    deadline_.store(deadline, std::memory_order_relaxed);
+    // A reader that reads the deadline first never applies a new deadline to an old count.
     count_.fetch_add(1, std::memory_order_release);
+    deadline_.store(deadline, std::memory_order_release);
   }
 
   /// The thread has ended in good order. It need not beat any more.
   void end() { ended_.store(true, std::memory_order_release); }
 
   uint64_t count() const { return count_.load(std::memory_order_acquire); }
-  Duration deadline() const { return deadline_.load(std::memory_order_relaxed); }
+  /// Read it before count(), if both are judged together.
+  Duration deadline() const { return deadline_.load(std::memory_order_acquire); }
   bool ended() const { return ended_.load(std::memory_order_acquire); }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "pipeline/preprocessing/network_camera.h"
 #include "pipeline/solver/posterior.h"
@@ -116,11 +117,12 @@ void Localizer::learn(const CameraImages& images, CameraMask usable, SearchRange
   if (changed) apply_learned();
 }
 
-bool Localizer::restore_calibration(const ExtrinsicErrors& errors,
-                                    const ExtrinsicCovariance& covariance) {
-  if (!online_calibration_ || !online_calibration_->restore(errors, covariance)) return false;
-  apply_learned();
-  return true;
+Status Localizer::restore_calibration(const ExtrinsicErrors& errors,
+                                      const ExtrinsicCovariance& covariance) {
+  assert(online_calibration_);
+  const Status restored = online_calibration_->restore(errors, covariance);
+  if (restored) apply_learned();
+  return restored;
 }
 
 void Localizer::apply_learned() {
@@ -135,9 +137,10 @@ CameraMask Localizer::load_images(const CameraImages& images) {
   };
   std::array<bool, kCameraCount> readable{};  // written by several threads
   network_->parallel_for(kCameraCount, [&](int camera) {
-    readable[camera] =
-        images.present[camera] &&
-        preprocessors_[camera].run(images.images[camera], planes_of(camera)).has_value();
+    if (!images.present[camera]) return;
+    Status read = preprocessors_[camera].run(images.images[camera], planes_of(camera));
+    readable[camera] = read.has_value();
+    if (!read) read_errors_[camera] = std::move(read.error().message);
   });
   for (int camera = 0; camera < kCameraCount; ++camera) {
     readable_[camera] = readable[camera];
@@ -146,6 +149,8 @@ CameraMask Localizer::load_images(const CameraImages& images) {
     view_monitor_.add(camera, planes_of(camera), images.driving);
   }
   view_monitor_.judge();
+  // Images without light are all equal, so that their repetition says nothing.
+  frozen_ &= ~(with(ViewFault::kDark) | with(ViewFault::kBlinded));
   const CameraMask left_out = online_calibration_ ? online_calibration_->left_out() : CameraMask();
   CameraMask usable;
   for (int camera = 0; camera < kCameraCount; ++camera) {

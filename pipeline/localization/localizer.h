@@ -86,15 +86,20 @@ class Localizer {
   /// The cameras whose image could be read in the latest localize().
   CameraMask readable() const { return readable_; }
 
-  /// The cameras that were frozen at their latest readable image.
+  /// Why the camera's image could not be read, at the latest localize() where it was present and
+  /// not readable().
+  const std::string& read_error(int camera) const { return read_errors_[camera]; }
+
+  /// The cameras that were frozen at their latest readable image, without those that are dark or
+  /// blinded.
   CameraMask frozen() const { return frozen_; }
 
   /// The cameras whose view has this fault at their latest readable image.
   CameraMask with(ViewFault fault) const { return view_monitor_.with(fault); }
 
-  /// Starts the online calibration with what an earlier drive learned. Returns false if that is
-  /// impossible (OnlineCalibration::restore()) or the online calibration is switched off.
-  bool restore_calibration(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
+  /// Starts the online calibration, which must be switched on, with what an earlier drive learned.
+  /// Fails as OnlineCalibration::restore() does.
+  Status restore_calibration(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
 
   /// What was learned about the calibration; null if the online calibration is switched off.
   const OnlineCalibration* online_calibration() const {
@@ -138,6 +143,7 @@ class Localizer {
   std::vector<ImagePreprocessor> preprocessors_;
   FrozenCameraDetector frozen_detector_;
   CameraMask readable_;
+  std::array<std::string, kCameraCount> read_errors_;
   CameraMask frozen_;
   ViewMonitor view_monitor_;
   MapRasterizer rasterizer_;

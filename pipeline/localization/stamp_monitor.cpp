@@ -33,12 +33,14 @@ void StampMonitor::reset() {
   sums_ = {};
   estimate_.reset();
   contradicts_ = false;
+  wrong_offset_ = {};
 }
 
 void StampMonitor::note_gap() {
   if (!contradicts_) return reset();
   rates_.clear();
   headings_.clear();
+  sums_ = {};
 }
 
 void StampMonitor::add_rate(Time time, double yaw_rate_radps) {
@@ -129,7 +131,10 @@ void StampMonitor::judge() {
   estimate_ = solved;
   const bool wrong = std::chrono::abs(solved->offset) - kCertain * solved->sigma > tolerated_;
   // Only what comes after a contradiction says whether the stamps are right again.
-  if (wrong) sums_ = {};
+  if (wrong) {
+    sums_ = {};
+    wrong_offset_ = solved->offset;
+  }
   contradicts_ = wrong || (contradicts_ && !agrees());
 }
 
@@ -141,8 +146,8 @@ bool StampMonitor::agrees() const {
 int StampMonitor::contradicting_ms() const {
   using std::chrono::duration_cast;
   using std::chrono::milliseconds;
-  if (!contradicts_ || !estimate_) return 0;
-  return static_cast<int>(duration_cast<milliseconds>(estimate_->offset).count());
+  if (!contradicts_) return 0;
+  return static_cast<int>(duration_cast<milliseconds>(wrong_offset_).count());
 }
 
 }  // namespace bevloc

@@ -45,8 +45,9 @@ class StampMonitor {
   /// Returns to the state after construction. Does not allocate.
   void reset();
 
-  /// Begins a new history after a gap in time. An offset that contradicts stays known, because a
-  /// gap does not set the clocks of the cameras right.
+  /// Begins a new history after a gap in time or a jump of the stamps. An offset that contradicts
+  /// stays known until later headings agree, because a gap does not set the clocks of the cameras
+  /// right.
   void note_gap();
 
   /// Whether the offset is certainly larger than tolerated. The answer stays true until agrees()
@@ -56,7 +57,8 @@ class StampMonitor {
   /// Whether the offset is certainly smaller than tolerated.
   bool agrees() const;
 
-  /// The offset in milliseconds while it contradicts; otherwise 0.
+  /// The latest offset in milliseconds that was certain, while it contradicts; otherwise 0. Later
+  /// estimates that are not certain do not change it.
   int contradicting_ms() const;
 
  private:
@@ -101,6 +103,7 @@ class StampMonitor {
   Sums sums_;
   std::optional<Estimate> estimate_;
   bool contradicts_ = false;
+  Duration wrong_offset_{0};  ///< the latest offset that was certainly larger than tolerated
 };
 
 }  // namespace bevloc

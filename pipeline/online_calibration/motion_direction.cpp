@@ -21,14 +21,18 @@ constexpr double kHeading_rad = radians(0.2);
 
 std::optional<HeadingTurn> MotionDirection::add(const std::optional<Se2>& map_from_vehicle,
                                                 const std::optional<DrivenStep>& step) {
-  if (!step || step->from != driven_until_ || samples_.full()) begin();
+  const bool paused = step && sampled_ && step->to - *sampled_ > kLongestPause;
+  if (!step || step->from != driven_until_ || samples_.full() || paused) begin();
   driven_until_.reset();
   if (step) {
     driven_ = driven_ * step->motion;
     length_m_ += step->motion.translation().norm();
     driven_until_ = step->to;
   }
-  if (map_from_vehicle) samples_.push_back({*map_from_vehicle, driven_});
+  if (map_from_vehicle) {
+    samples_.push_back({*map_from_vehicle, driven_});
+    sampled_ = driven_until_;
+  }
   if (length_m_ < kStretch_m || samples_.size() < kLeastPoses) return std::nullopt;
   const HeadingTurn result = turn();
   begin();
@@ -39,6 +43,7 @@ void MotionDirection::begin() {
   samples_.clear();
   driven_ = Se2();
   length_m_ = 0.0;
+  sampled_.reset();
 }
 
 /// Lays the driven path over the matched positions, by weighted least squares. Matches are several

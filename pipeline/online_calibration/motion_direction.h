@@ -28,8 +28,8 @@ class MotionDirection {
 
   /// `map_from_vehicle` is the matched pose at the end of the step, if the match is clear. `step`
   /// is what the vehicle drove since the previous call. A new stretch begins if that is not known,
-  /// or if the step does not begin where the previous one ended. Returns a comparison at the end of
-  /// a stretch.
+  /// if the step does not begin where the previous one ended, or kLongestPause after the latest
+  /// clear match. Returns a comparison at the end of a stretch.
   std::optional<HeadingTurn> add(const std::optional<Se2>& map_from_vehicle,
                                  const std::optional<DrivenStep>& step);
 
@@ -37,6 +37,9 @@ class MotionDirection {
   static constexpr size_t kMostPoses = 512;
   /// A stretch goes on until it has as many clear matches.
   static constexpr size_t kLeastPoses = 20;
+  /// Longest time without a clear match within a stretch. In a longer time, odometry turns away
+  /// from the path, and this would look like a turn of all cameras.
+  static constexpr Duration kLongestPause = std::chrono::seconds(5);
 
   struct Sample {
     Se2 matched;
@@ -50,6 +53,7 @@ class MotionDirection {
   Se2 driven_;  ///< motion since the beginning of the stretch
   double length_m_ = 0.0;
   std::optional<Time> driven_until_;
+  std::optional<Time> sampled_;  ///< time of the latest sample of the stretch
 };
 
 }  // namespace bevloc

@@ -41,19 +41,36 @@ OnlineCalibration::OnlineCalibration(const Rig& rig, const BevGrid& grid,
                                      const OnlineCalibrationOptions& options)
     : options_(options), sums_(grid), filter_(rig) {}
 
-bool OnlineCalibration::restore(const ExtrinsicErrors& errors,
-                                const ExtrinsicCovariance& covariance) {
+Status OnlineCalibration::restore(const ExtrinsicErrors& errors,
+                                  const ExtrinsicCovariance& covariance) {
   for (int error = 0; error < kExtrinsicErrors; ++error) {
-    if (!(std::abs(errors(error)) <= limit_of(error))) return false;
+    if (!is_beyond(error, errors(error), covariance(error, error))) continue;
+    return fail("found learned errors of the camera {} beyond their bounds, wanted smaller ones",
+                kCameraNames[error / kErrorsPerCamera]);
   }
-  if (!filter_.restore(errors, covariance)) return false;
-  used_ = filter_.errors();
+  if (!filter_.restore(errors, covariance)) {
+    return fail(
+        "found a covariance of the learned errors that is not positive definite, wanted one "
+        "that is");
+  }
+  used_ = within_bounds(filter_.errors());
   start_ = used_;
-  return true;
+  return {};
 }
 
 double OnlineCalibration::limit_of(int error) const {
   return error % kErrorsPerCamera < 3 ? options_.max_rotation_rad : options_.max_translation_m;
+}
+
+bool OnlineCalibration::is_beyond(int error, double value, double variance) const {
+  return std::abs(value) - kSigmasBeyond * std::sqrt(variance) > limit_of(error);
+}
+
+ExtrinsicErrors OnlineCalibration::within_bounds(ExtrinsicErrors errors) const {
+  for (int error = 0; error < kExtrinsicErrors; ++error) {
+    errors(error) = std::clamp(errors(error), -limit_of(error), limit_of(error));
+  }
+  return errors;
 }
 
 bool OnlineCalibration::observe(const CalibrationObservation& observation) {
@@ -104,8 +121,7 @@ void OnlineCalibration::judge_bounds() {
     beyond_bounds_[camera] = false;
     for (int i = 0; i < kErrorsPerCamera; ++i) {
       const int error = camera * kErrorsPerCamera + i;
-      const double sigma = std::sqrt(filter_.covariance()(error, error));
-      if (std::abs(filter_.errors()(error)) - kSigmasBeyond * sigma > limit_of(error)) {
+      if (is_beyond(error, filter_.errors()(error), filter_.covariance()(error, error))) {
         beyond_bounds_[camera] = true;
       }
     }
@@ -125,14 +141,13 @@ bool OnlineCalibration::use_again(const ExtrinsicErrors& errors) {
 }
 
 bool OnlineCalibration::follow_estimate() {
-  ExtrinsicErrors wanted = filter_.errors();
+  ExtrinsicErrors wanted = within_bounds(filter_.errors());
   bool moved = false;
   for (int error = 0; error < kExtrinsicErrors; ++error) {
     const bool is_rotation = error % kErrorsPerCamera < 3;
     const double step = is_rotation ? kStep_rad : kStep_m;
     const double reach =
         std::min(unfollowed_s_ * (is_rotation ? kFastest_radps : kFastest_mps), kMostSteps * step);
-    wanted(error) = std::clamp(wanted(error), -limit_of(error), limit_of(error));
     wanted(error) = std::clamp(wanted(error), used_(error) - reach, used_(error) + reach);
     moved |= std::abs(wanted(error) - used_(error)) > step;
   }

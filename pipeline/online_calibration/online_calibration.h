@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/cameras.h"
+#include "common/result.h"
 #include "common/time.h"
 #include "pipeline/online_calibration/camera_agreement.h"
 #include "pipeline/online_calibration/extrinsic_filter.h"
@@ -48,9 +49,11 @@ class OnlineCalibration {
   /// `rig` is the network rig of the calibration.
   OnlineCalibration(const Rig& rig, const BevGrid& grid, const OnlineCalibrationOptions& options);
 
-  /// Starts with an estimate of an earlier drive. Returns false, and changes nothing, if it is
-  /// beyond the bounds, not finite, or its covariance is not positive definite.
-  bool restore(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
+  /// Starts with an estimate of an earlier drive. It accepts errors that faults() would accept, and
+  /// keeps used_errors() within the bounds. Fails, and changes nothing, if an error is beyond its
+  /// bound by more than half its sigma, a value is not finite, or the covariance is not positive
+  /// definite.
+  Status restore(const ExtrinsicErrors& errors, const ExtrinsicCovariance& covariance);
 
   /// Learns from a match, but at most a few times per second. Returns whether used_errors()
   /// changed.
@@ -80,6 +83,8 @@ class OnlineCalibration {
   bool use_again(const ExtrinsicErrors& errors);
   bool follow_estimate();
   double limit_of(int error) const;
+  bool is_beyond(int error, double value, double variance) const;
+  ExtrinsicErrors within_bounds(ExtrinsicErrors errors) const;
 
   OnlineCalibrationOptions options_;
   ExtrinsicSums sums_;

@@ -1,5 +1,6 @@
 #include "pipeline/calibration/refine/tie_finder.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -54,7 +55,9 @@ std::optional<Patch> read_patch(const GreyImage& image, const Eigen::Vector2d& c
 /// search would be in vain.
 bool normalize(Patch& patch) {
   constexpr float kLeastContrast = 2.5F;  // grey levels, one sigma
-  constexpr float kLeastTexture = 0.6F;   // grey levels per pixel along the axis of least texture
+  // Sum of the squared slopes along the axis of least texture, divided by the number of pixels:
+  // (grey levels per pixel)^2.
+  constexpr float kLeastTexture = 1.5F;
   float sum = 0.0F;
   for (const float value : patch) sum += value;
   float squares = 0.0F;
@@ -75,7 +78,7 @@ bool normalize(Patch& patch) {
   const float half_trace = 0.5F * structure.trace();
   const float least =
       half_trace - std::sqrt(std::max(0.0F, half_trace * half_trace - structure.determinant()));
-  if (least < kLeastTexture * kLeastSlope * kPixels) return false;
+  if (least < kLeastTexture * kPixels) return false;
   const float scale = 1.0F / std::sqrt(squares);
   for (float& value : patch) value *= scale;
   return true;

@@ -22,11 +22,11 @@ TEST(ApplianceTest, WarnsOfLearnedErrorsOnlyIfItUsesThem) {
   config.learned_calibration_file = folder / "learned.yaml";
   drivers::VirtualClock clock;
   can::MockWire wire(16);
-  const auto warns_of = [&](double learned_rad, bool enabled) {
+  const auto log_of = [&](double learned_rad, double variance, bool enabled) {
     LearnedCalibration learned;
     learned.rig_crc32 = rig_crc32(rig);
     learned.errors.setConstant(learned_rad);
-    learned.covariance = 1e-6 * ExtrinsicCovariance::Identity();
+    learned.covariance = variance * ExtrinsicCovariance::Identity();
     EXPECT_TRUE(save_learned(learned, config.learned_calibration_file));
     config.online_calibration.enabled = enabled;
     Hardware hardware;
@@ -35,13 +35,18 @@ TEST(ApplianceTest, WarnsOfLearnedErrorsOnlyIfItUsesThem) {
     const LogCapture log;
     const auto appliance = Appliance::create(config, rig, map, std::move(hardware));
     EXPECT_TRUE(appliance) << appliance.error().message;
-    return log.text().find("warning: ") != std::string::npos;
+    return log.text();
   };
+  constexpr const char* kWarning = "warning: ";
+  constexpr double kVariance = 1e-6;
   const double beyond_rad = 2.0 * config.online_calibration.max_rotation_rad;
-  EXPECT_TRUE(warns_of(beyond_rad, true));
-  EXPECT_FALSE(warns_of(beyond_rad, false));
-  EXPECT_FALSE(warns_of(0.0, true));
-  EXPECT_FALSE(warns_of(0.0, false));
+  const std::string beyond = log_of(beyond_rad, kVariance, true);
+  EXPECT_NE(beyond.find("beyond their bounds"), std::string::npos) << beyond;
+  const std::string indefinite = log_of(0.0, -kVariance, true);
+  EXPECT_NE(indefinite.find("not positive definite"), std::string::npos) << indefinite;
+  EXPECT_EQ(log_of(beyond_rad, kVariance, false).find(kWarning), std::string::npos);
+  EXPECT_EQ(log_of(0.0, kVariance, true).find(kWarning), std::string::npos);
+  EXPECT_EQ(log_of(0.0, kVariance, false).find(kWarning), std::string::npos);
 }
 
 }  // namespace

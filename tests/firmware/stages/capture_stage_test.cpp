@@ -132,10 +132,16 @@ TEST_F(CaptureStageTest, StartsASilentCameraAgainLessAndLessOften) {
 
 TEST_F(CaptureStageTest, MarksFramesWhoseStampsHaveJumped) {
   run(milliseconds(1000));
-  while (const auto frame = frames_.pop(Duration::zero())) EXPECT_FALSE(frame->stamp_jumped);
+  while (const auto frame = frames_.pop(Duration::zero())) {
+    EXPECT_FALSE(frame->stamp_jumped);
+    EXPECT_EQ(frame->stamp_jumps, 0U);
+  }
   camera_.stamp_error = milliseconds(-100);
   run(milliseconds(1000));
-  while (const auto frame = frames_.pop(Duration::zero())) EXPECT_TRUE(frame->stamp_jumped);
+  while (const auto frame = frames_.pop(Duration::zero())) {
+    EXPECT_TRUE(frame->stamp_jumped);
+    EXPECT_EQ(frame->stamp_jumps, 1U);
+  }
   EXPECT_EQ(log_.text(),
             "warning: camera front: its time stamps jumped, but its frames arrive as before; check "
             "its clock and its driver, then restart bevlocd\n");

@@ -84,7 +84,7 @@ TEST_F(EstimationStageTest, TellsTheSourceOfTime) {
   std::vector<can::PoseReport> reports;
   stage_.observe_reports([&](const can::PoseReport& report) { reports.push_back(report); });
   run(milliseconds(10));
-  stage_.note_clock(kPtpClock);
+  note_clock(kPtpClock);
   run(milliseconds(10));
   ASSERT_EQ(reports.size(), 2U);
   EXPECT_EQ(reports[0].status.time_source, can::TimeSource::kFreeRunning);
@@ -97,7 +97,7 @@ TEST_F(EstimationStageTest, TellsTheSourceOfTime) {
 TEST_F(EstimationStageTest, AfterAClockGapTheClockIsUnknownUntilItIsNotedAgain) {
   can::PoseReport latest;
   stage_.observe_reports([&](const can::PoseReport& report) { latest = report; });
-  stage_.note_clock(kPtpClock);
+  note_clock(kPtpClock);
   run(milliseconds(10));
   ASSERT_EQ(latest.clock.source, can::TimeSource::kPtp);
   suspended_ += std::chrono::hours(8);
@@ -109,7 +109,7 @@ TEST_F(EstimationStageTest, AfterAClockGapTheClockIsUnknownUntilItIsNotedAgain) 
   }
   can::ClockReport noted = kPtpClock;
   noted.utc_offset += std::chrono::hours(8);
-  stage_.note_clock(noted);
+  note_clock(noted);
   run(milliseconds(10));
   EXPECT_EQ(latest.status.time_source, can::TimeSource::kPtp);
   EXPECT_EQ(latest.clock.source, can::TimeSource::kPtp);
@@ -117,13 +117,29 @@ TEST_F(EstimationStageTest, AfterAClockGapTheClockIsUnknownUntilItIsNotedAgain) 
 }
 
 TEST_F(EstimationStageTest, AStallOfTheThreadIsAClockGapForTheClock) {
-  stage_.note_clock(kPtpClock);
+  note_clock(kPtpClock);
   run(milliseconds(100));
   ASSERT_EQ(stage_.counters().time_source, can::TimeSource::kPtp);
   now_ += std::chrono::seconds(1);
   run(milliseconds(10));
   EXPECT_EQ(stage_.counters().clock_gaps, 1U);
   EXPECT_EQ(stage_.counters().time_source, can::TimeSource::kFreeRunning);
+}
+
+/// The machine was suspended after the clock was read and before the note arrives.
+TEST_F(EstimationStageTest, AClockThatWasReadBeforeAGapIsNotTold) {
+  can::PoseReport latest;
+  stage_.observe_reports([&](const can::PoseReport& report) { latest = report; });
+  note_clock(kPtpClock);
+  run(milliseconds(10));
+  ASSERT_EQ(latest.clock.source, can::TimeSource::kPtp);
+  const uint64_t gaps_before = stage_.counters().clock_gaps;
+  suspended_ += std::chrono::hours(8);
+  run(milliseconds(10));
+  stage_.note_clock(kPtpClock, gaps_before);
+  run(milliseconds(10));
+  EXPECT_EQ(latest.clock.source, can::TimeSource::kFreeRunning);
+  EXPECT_EQ(latest.status.time_source, can::TimeSource::kFreeRunning);
 }
 
 TEST_F(EstimationStageTest, APoseThatGetsOldBeforeItIsSentIsLost) {
@@ -150,7 +166,7 @@ TEST_F(EstimationStageTest, APoseThatGetsOldBeforeItIsSentIsLost) {
 TEST_F(EstimationStageTest, APoseFromBeforeASuspensionIsLostAndSoIsTheClock) {
   can::PoseReport latest;
   stage_.observe_reports([&](const can::PoseReport& report) { latest = report; });
-  stage_.note_clock(kPtpClock);
+  note_clock(kPtpClock);
   run(milliseconds(5000));
   ASSERT_EQ(reader_.state(), HealthState::kTracking);
   ASSERT_EQ(latest.clock.source, can::TimeSource::kPtp);

@@ -96,6 +96,11 @@ class EstimationStageTest : public testing::Test {
     reports_.push(report);
   }
 
+  /// Sets what the status tells about the clock, as read now.
+  void note_clock(const can::ClockReport& clock) {
+    stage_.note_clock(clock, stage_.counters().clock_gaps);
+  }
+
   /// The latest prediction; the queue is empty then.
   std::optional<firmware::Prediction> take_prediction() {
     std::optional<firmware::Prediction> latest;

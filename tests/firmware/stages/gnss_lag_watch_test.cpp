@@ -111,6 +111,21 @@ TEST_F(GnssLagWatchTest, AHeadingThatSeemsNewerIsNoLag) {
   EXPECT_EQ(watch_.lag_ms(), 0);
 }
 
+/// While the monitor is not certain again, its estimates may have the other sign.
+TEST_F(GnssLagWatchTest, AYawRateThatWasLateIsNoLagLater) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    random_.seed(seed);
+    watch_.reset();
+    time_s_ = error_rad_ = 0.0;
+    drive(60.0, -0.3);
+    EXPECT_FALSE(watch_.contradicts()) << "seed " << seed;
+    for (int second = 0; second < 120; ++second) {
+      drive(1.0, 0.0);
+      EXPECT_FALSE(watch_.contradicts()) << "seed " << seed << ", second " << second;
+    }
+  }
+}
+
 TEST_F(GnssLagWatchTest, ACourseOverGroundSaysNothing) {
   heading_sigma_rad_ = radians(3.0);
   drive(60.0, 0.5);

@@ -1,16 +1,22 @@
 #include "firmware/stages/vision_stage.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
+#include <gmock/gmock.h>
+
 #include "common/files.h"
+#include "tests/firmware/log_capture.h"
 #include "tests/firmware/stages/vision_stage_fixture.h"
+#include "tests/pipeline/preprocessing/camera_images.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::HasSubstr;
 
 TEST_F(VisionStageTest, ReportsTheNewestFramesetAndThatOneWasSkipped) {
   push_frameset(Time(milliseconds(800)));
@@ -68,6 +74,7 @@ TEST_F(VisionStageTest, LeavesOutFramesWhoseStampsHaveJumped) {
       drivers::Frame frame;
       frame.camera = camera;
       frame.stamp_jumped = camera < jumped;
+      frame.stamp_jumps = frame.stamp_jumped ? 2 : 1;
       frame.time = Time(milliseconds(frame.stamp_jumped ? 852 : 900));
       frames_.push(std::move(frame));
     }
@@ -75,6 +82,7 @@ TEST_F(VisionStageTest, LeavesOutFramesWhoseStampsHaveJumped) {
     ASSERT_TRUE(report);
     const bool most = jumped == 4;
     EXPECT_EQ(report->stamps_jumped, most);
+    EXPECT_EQ(report->stamp_jumps, most ? 2U : 1U);
     EXPECT_EQ(stage_->counters().stamps_jumped, 0b111111U >> (kCameraCount - jumped));
     EXPECT_EQ(report->present, CameraMask(most ? 0b111111U : 0b111111U << jumped));
     EXPECT_EQ(report->frame_time, Time(milliseconds(most ? 852 : 900)));
@@ -143,6 +151,34 @@ TEST_F(VisionStageImageTest, ACameraWithADamagedImageIsMissingFromThatFramesetOn
   for (int camera = 0; camera < kCameraCount; ++camera) {
     EXPECT_EQ(stage_->counters().unreadable[camera], camera == kDamagedCamera ? 1U : 0U);
   }
+}
+
+TEST_F(VisionStageImageTest, LogsOncePerCauseWhyAnImageCannotBeRead) {
+  const LogCapture log;
+  Time time(milliseconds(880));
+  const auto show = [&](const std::vector<uint8_t>& jpeg) {
+    damaged_.planes[0].data = jpeg.data();
+    damaged_.bytes_used = jpeg.size();
+    push_images(time += milliseconds(10), true);
+    ASSERT_TRUE(step());
+  };
+  const auto lines = [&log] {
+    const std::string text = log.text();
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  show({0x11, 0x22, 0x33, 0x44, 0x55, 0x66});  // libjpeg quotes the first two bytes
+  show({0x77, 0x66, 0x55, 0x44, 0x33, 0x22});
+  EXPECT_EQ(lines(), 1) << log.text();
+  EXPECT_THAT(log.text(), HasSubstr("warning: camera back: unreadable image: JPEG frame: found an "
+                                    "unreadable header (Not a JPEG file"));
+  const RgbImage image(image_.width, image_.height);
+  show(test::jpeg_image(image, TJSAMP_GRAY).bytes);
+  EXPECT_EQ(lines(), 2) << log.text();
+  EXPECT_THAT(log.text(), HasSubstr("found no colour, wanted YCbCr"));
+  show(test::jpeg_image(RgbImage(64, 48), TJSAMP_420).bytes);
+  EXPECT_EQ(lines(), 3) << log.text();
+  EXPECT_THAT(log.text(), HasSubstr("found 64x48 pixels, wanted "));
+  EXPECT_EQ(stage_->counters().unreadable[kDamagedCamera], 4U);
 }
 
 TEST_F(VisionStageImageTest, AFramesetWithTooFewReadableImagesIsNotMatched) {
@@ -309,6 +345,16 @@ TEST_F(VisionStageFrozenTest, MatchesNothingWithSixDarkCameras) {
     EXPECT_TRUE(drive_on(5.0, false).none());
     EXPECT_EQ(stage_->counters().dark, 0b111111U);
     EXPECT_EQ(stage_->counters().refused, static_cast<uint64_t>(i) + 1);
+  }
+}
+
+/// Images without light repeat each other. The camera does not hang.
+TEST_F(VisionStageFrozenTest, ABlackCameraIsNotCalledFrozen) {
+  std::ranges::fill(stuck_rgb_, uint8_t{0});
+  for (int i = 0; i <= kBroken + 1; ++i) {
+    EXPECT_EQ(drive_on(5.0, true), others_) << i;
+    EXPECT_EQ(stage_->counters().dark, 1U << kFrozenCamera) << i;
+    EXPECT_EQ(stage_->counters().frozen, 0U) << i;
   }
 }
 

@@ -93,6 +93,7 @@ TEST(StampMonitorTest, AGapKeepsAWrongOffsetAndForgetsARightOne) {
   StampMonitor wrong = after({.offset_s = 0.1});
   wrong.note_gap();
   EXPECT_TRUE(wrong.contradicts());
+  EXPECT_NEAR(wrong.contradicting_ms(), 100, 40);
   StampMonitor right = after({});
   ASSERT_TRUE(right.agrees());
   right.note_gap();

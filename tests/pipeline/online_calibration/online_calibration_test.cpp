@@ -103,6 +103,36 @@ TEST(OnlineCalibration, RestoresWhatIsWithinTheBounds) {
   EXPECT_EQ(calibration.used_errors(), kSmallError);
 }
 
+/// Errors that are no fault while the vehicle drives are saved, so a later start must accept them.
+TEST(OnlineCalibration, RestoresWhatIsBeyondABoundByLessThanHalfASigma) {
+  const OnlineCalibrationOptions options;
+  OnlineCalibration calibration(demo_network_rig(), kFeatureGrid, options);
+  const double sigma_rad = 1e-3;
+  const ExtrinsicCovariance covariance = sigma_rad * sigma_rad * ExtrinsicCovariance::Identity();
+  const auto beyond_by = [&](double sigmas) {
+    return error_of(1, 0, -options.max_rotation_rad - sigmas * sigma_rad);
+  };
+  EXPECT_FALSE(calibration.restore(beyond_by(0.6), covariance));
+  EXPECT_TRUE(calibration.restore(beyond_by(0.4), covariance));
+  EXPECT_EQ(calibration.filter().errors(), beyond_by(0.4));
+  EXPECT_EQ(calibration.used_errors(), error_of(1, 0, -options.max_rotation_rad));
+  EXPECT_TRUE(calibration.faults().none());
+}
+
+TEST(OnlineCalibration, SaysWhyItRestoresNothing) {
+  OnlineCalibration calibration(demo_network_rig(), kFeatureGrid, {});
+  const ExtrinsicCovariance covariance = 1e-6 * ExtrinsicCovariance::Identity();
+  const auto beyond = calibration.restore(error_of(1, 0, radians(0.7)), covariance);
+  ASSERT_FALSE(beyond);
+  EXPECT_NE(beyond.error().message.find("front beyond"), std::string::npos)
+      << beyond.error().message;
+  const auto indefinite = calibration.restore(kSmallError, -covariance);
+  ASSERT_FALSE(indefinite);
+  EXPECT_NE(indefinite.error().message.find("positive definite"), std::string::npos)
+      << indefinite.error().message;
+  EXPECT_EQ(calibration.used_errors(), ExtrinsicErrors::Zero());
+}
+
 TEST(OnlineCalibration, NamesACameraOnlyAfterItHasContradictedTheMapForSomeSeconds) {
   DemoDriver driver;
   driver.drive(ExtrinsicErrors::Zero(), 150);
