@@ -31,8 +31,11 @@ VehicleEncoder::VehicleEncoder(const BaseIds& base, GeodeticPosition map_origin,
 
 std::array<Frame, 2> VehicleEncoder::odometry(const OdometrySample& sample) {
   const double half_difference_mps = 0.5 * rear_track_m_ * sample.yaw_rate_radps;
-  return odometry(WheelOdometry{sample.speed_mps - half_difference_mps,
-                                sample.speed_mps + half_difference_mps, sample.yaw_rate_radps});
+  return odometry(WheelOdometry{.left_mps = sample.speed_mps - half_difference_mps,
+                                .right_mps = sample.speed_mps + half_difference_mps,
+                                .yaw_rate_radps = sample.yaw_rate_radps,
+                                .front_speed_mps = sample.speed_mps,
+                                .front_yaw_rate_radps = sample.yaw_rate_radps});
 }
 
 std::array<Frame, 2> VehicleEncoder::odometry(const WheelOdometry& measured) {

@@ -16,10 +16,14 @@ struct WheelOdometry {
   double left_mps = 0.0;  ///< speeds of the rear wheels
   double right_mps = 0.0;
   double yaw_rate_radps = 0.0;
+  /// The motion that the front wheels measure, if the vehicle sends their speeds: the speed of the
+  /// middle of the rear axle, and the yaw rate.
+  double front_speed_mps = 0.0;
+  double front_yaw_rate_radps = 0.0;
 };
 
-/// Makes the protected frames that VehicleInput reads, from the same message table. A value that is
-/// not finite is sent as SNA. One thread.
+/// Makes the protected frames that VehicleInput reads, from the same message table. They have no
+/// front wheels. A value that is not finite is sent as SNA. One thread.
 class VehicleEncoder {
  public:
   /// `rear_track_m` is the distance between the rear wheels, whose speeds differ in a bend.

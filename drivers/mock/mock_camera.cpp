@@ -63,7 +63,8 @@ Status MockCamera::draw(const Delivery& delivery, RgbImage& image) {
                 kCameraNames[config_.camera], camera.intrinsics.width_px,
                 camera.intrinsics.height_px, kCameraNames[source], image.width, image.height);
   }
-  scene_->draw(source, sim::disturbed(camera, active), scene_time, image);
+  const CameraModel disturbed = sim::disturbed(camera, active);
+  scene_->draw(source, {disturbed, camera}, scene_time, image);
   for (const sim::Fault& fault : active) {
     if (fault.kind == sim::FaultKind::kCameraDirty) cover_lens(source, fault.amounts.share, image);
   }

@@ -59,7 +59,7 @@ MockScene::MockScene(std::shared_ptr<const sim::World> world,
       digest_(pictures_ ? digest_of_all(*world_, conditions_, street_) : 0),
       renderers_{RendererSlot(ground), RendererSlot(ground)} {}
 
-uint64_t MockScene::key_of(const CameraModel& true_camera, const sim::Drive::State& state,
+uint64_t MockScene::key_of(const sim::MountedCamera& true_camera, const sim::Drive::State& state,
                            const sim::BodyMotion& body, Duration drive_time,
                            uint64_t image_seed) const {
   sim::Digest digest;
@@ -71,11 +71,12 @@ uint64_t MockScene::key_of(const CameraModel& true_camera, const sim::Drive::Sta
        {pose.x_m, pose.y_m, pose.yaw_rad, body.pitch_rad, body.roll_rad, body.lift_m}) {
     digest.add(part);
   }
-  add(digest, true_camera);
+  add(digest, true_camera.now);
+  add(digest, true_camera.built_in);
   return digest.value();
 }
 
-void MockScene::draw(int camera, const CameraModel& true_camera, Duration drive_time,
+void MockScene::draw(int camera, const sim::MountedCamera& true_camera, Duration drive_time,
                      RgbImage& image) {
   const double time_s = to_seconds(drive_time);
   const uint64_t camera_seed = sim::seed_for(noise_seed_, kCameraNames[camera]);

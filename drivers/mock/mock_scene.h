@@ -10,8 +10,8 @@
 #include "common/image.h"
 #include "common/time.h"
 #include "drivers/mock/picture_cache.h"
-#include "pipeline/calibration/camera_model.h"
 #include "sim/render/ground_tiles.h"
+#include "sim/render/mounted_camera.h"
 #include "sim/render/picture_look.h"
 #include "sim/render/renderer.h"
 #include "sim/vehicle/drive.h"
@@ -38,9 +38,10 @@ class MockScene {
             std::shared_ptr<PictureCache> pictures = nullptr, const MockStreet& street = {});
 
   /// Draws the view of camera `camera` (index into kCameraNames) at a time of the drive. The pixels
-  /// do not depend on earlier calls. `true_camera` is the true camera model, from which the
+  /// do not depend on earlier calls. `true_camera` has the true camera models, from which the
   /// calibration file differs by the calibration error.
-  void draw(int camera, const CameraModel& true_camera, Duration drive_time, RgbImage& image);
+  void draw(int camera, const sim::MountedCamera& true_camera, Duration drive_time,
+            RgbImage& image);
 
  private:
   /// A renderer that several cameras share.
@@ -56,7 +57,7 @@ class MockScene {
             std::shared_ptr<PictureCache> pictures, const MockStreet& street,
             const std::shared_ptr<sim::GroundTiles>& ground);
 
-  uint64_t key_of(const CameraModel& true_camera, const sim::Drive::State& state,
+  uint64_t key_of(const sim::MountedCamera& true_camera, const sim::Drive::State& state,
                   const sim::BodyMotion& body, Duration drive_time, uint64_t image_seed) const;
 
   const std::shared_ptr<const sim::World> world_;

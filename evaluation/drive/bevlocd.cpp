@@ -8,6 +8,7 @@
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "evaluation/drive/bus_factory.h"
 #include "evaluation/drive/simulated_run.h"
+#include "evaluation/files_of_config.h"
 #include "evaluation/town_seeds.h"
 #include "firmware/config/config_key.h"
 #include "firmware/daemon/daemon.h"
@@ -99,6 +100,7 @@ Status run(const firmware::ProgramOptions& program, const DriveOptions& drive,
   if (!config) return tl::unexpected(config.error());
   if (Status status = apply(drive, program.config_file, *config); !status) return status;
   if (Status status = firmware::override_config(program, *config); !status) return status;
+  if (Status other = check_output(drive.json_file, files_of(*config)); !other) return other;
   if (program.check_config) return firmware::check_and_print(program, *config);
   firmware::set_log_level(config->log_level);
   const auto rig = firmware::rig_of(*config);

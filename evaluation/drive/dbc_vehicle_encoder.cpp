@@ -50,11 +50,12 @@ std::span<const can::Frame> DbcVehicleEncoder::odometry(const can::WheelOdometry
   const can::BoundWheels& moving = binding_.wheels;
   const double speed_mps = 0.5 * (measured.left_mps + measured.right_mps);
   const bool reverses = moving.backward && speed_mps < 0.0;
-  const can::WheelFusion axle(rear_track_m_, moving.wheelbase_m, measured.yaw_rate_radps);
+  const can::WheelFusion front(rear_track_m_, moving.wheelbase_m, measured.front_yaw_rate_radps);
   for (const can::BoundWheels::Wheel& wheel : moving.wheels) {
-    double wheel_mps = axle.wheel_speed(wheel.place, speed_mps);
+    double wheel_mps = front.wheel_speed(wheel.place, measured.front_speed_mps);
     if (wheel.place == can::WheelPlace::kRearLeft) wheel_mps = measured.left_mps;
     if (wheel.place == can::WheelPlace::kRearRight) wheel_mps = measured.right_mps;
+    if (wheel.place == can::WheelPlace::kVehicle) wheel_mps = speed_mps;
     set(wheel.signal, reverses ? -wheel_mps : wheel_mps);
   }
   set(moving.valid, true);
@@ -72,8 +73,11 @@ std::span<const can::Frame> DbcVehicleEncoder::odometry(const can::WheelOdometry
 std::span<const can::Frame> DbcVehicleEncoder::odometry(const OdometrySample& sample) {
   const can::WheelFusion axle(rear_track_m_, binding_.wheels.wheelbase_m, sample.yaw_rate_radps);
   return odometry(can::WheelOdometry{
-      axle.wheel_speed(can::WheelPlace::kRearLeft, sample.speed_mps),
-      axle.wheel_speed(can::WheelPlace::kRearRight, sample.speed_mps), sample.yaw_rate_radps});
+      .left_mps = axle.wheel_speed(can::WheelPlace::kRearLeft, sample.speed_mps),
+      .right_mps = axle.wheel_speed(can::WheelPlace::kRearRight, sample.speed_mps),
+      .yaw_rate_radps = sample.yaw_rate_radps,
+      .front_speed_mps = sample.speed_mps,
+      .front_yaw_rate_radps = sample.yaw_rate_radps});
 }
 
 std::span<const can::Frame> DbcVehicleEncoder::gnss(const GnssSample& sample) {

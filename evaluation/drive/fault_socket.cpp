@@ -12,6 +12,7 @@
 #include <sys/un.h>
 
 #include "common/number_text.h"
+#include "evaluation/drive/vehicle_bus_encoder.h"
 #include "sim/faults/drive_clock.h"
 #include "sim/faults/fault_text.h"
 
@@ -51,7 +52,7 @@ std::string to_list(const sim::FaultBoard& faults) {
 
 Result<std::unique_ptr<FaultServer>> FaultServer::open(const std::filesystem::path& path,
                                                        std::shared_ptr<sim::FaultBoard> faults,
-                                                       double drive_s, bool lockstep) {
+                                                       DriveWithSocket drive) {
   const auto address = address_of(path);
   if (!address) return tl::unexpected(address.error());
   FileDescriptor descriptor(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -62,16 +63,15 @@ Result<std::unique_ptr<FaultServer>> FaultServer::open(const std::filesystem::pa
                 path.string(), std::strerror(errno));
   }
   return std::unique_ptr<FaultServer>(
-      new FaultServer(std::move(descriptor), path, std::move(faults), drive_s, lockstep));
+      new FaultServer(std::move(descriptor), path, std::move(faults), std::move(drive)));
 }
 
 FaultServer::FaultServer(FileDescriptor descriptor, std::filesystem::path path,
-                         std::shared_ptr<sim::FaultBoard> faults, double drive_s, bool lockstep)
+                         std::shared_ptr<sim::FaultBoard> faults, DriveWithSocket drive)
     : descriptor_(std::move(descriptor)),
       path_(std::move(path)),
       faults_(std::move(faults)),
-      drive_s_(drive_s),
-      lockstep_(lockstep) {}
+      drive_(std::move(drive)) {}
 
 FaultServer::~FaultServer() {
   std::error_code ignored;
@@ -118,14 +118,14 @@ Status FaultServer::check(const sim::Fault& fault, double now_s) const {
         "once",
         info.name);
   }
-  if (lockstep_ && info.input == sim::FaultInput::kThread) {
+  if (drive_.lockstep && info.input == sim::FaultInput::kThread) {
     return fail("found {} with --fast, wanted a drive without, because one thread runs everything",
                 info.name);
   }
-  if (fault.kind != sim::FaultKind::kClockSuspend) return {};
+  if (fault.kind != sim::FaultKind::kClockSuspend) return check_expressible(fault, drive_.can);
   const double begins_s =
       std::max(now_s, fault.from_s) + sim::added_time_s(faults_->all(sim::FaultInput::kClock));
-  const double left_s = std::max(0.0, drive_s_ - begins_s);
+  const double left_s = std::max(0.0, drive_.length_s - begins_s);
   if (fault.amounts.gap_s <= left_s) return {};
   return fail(
       "gap_s: found {}, wanted at most {:.1f}, because the simulated drive ends then; a longer "

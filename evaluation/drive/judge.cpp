@@ -26,15 +26,18 @@ Result<std::unique_ptr<Judge>> Judge::create(std::unique_ptr<can::Bus> bus,
 Judge::Judge(std::unique_ptr<can::Bus> bus, const firmware::CanConfig& can, const GeoOrigin& origin,
              TruthAt truth, JudgeTimes times, BusLog log)
     : bus_(std::move(bus)),
-      base_(can.base_ids),
+      can_(can),
+      map_origin_{origin.latitude_deg, origin.longitude_deg},
       truth_(std::move(truth)),
       times_(times),
       log_(std::move(log)),
-      reader_(can.base_ids, {origin.latitude_deg, origin.longitude_deg}),
-      prior_input_(
-          firmware::make_vehicle_decoder(can, {origin.latitude_deg, origin.longitude_deg})),
-      prior_tracker_(TrackerParameters()),
+      reader_(can_.base_ids, map_origin_),
+      prior_(new_prior()),
       next_comparison_(times.drive_start) {}
+
+Judge::Prior Judge::new_prior() const {
+  return Prior(firmware::make_vehicle_decoder(can_, map_origin_));
+}
 
 void Judge::step(Duration timeout) {
   if (!bus_->wait(timeout)) return;
@@ -44,9 +47,13 @@ void Judge::step(Duration timeout) {
 void Judge::take(const can::ReceivedFrame& received) {
   log_.add(received.received - times_.log_start, received.frame);
   latest_s_ = to_seconds(received.received - times_.drive_start);
-  if (const auto samples = prior_input_->accept(received)) {
-    if (samples.odometry) prior_tracker_.add_odometry(*samples.odometry);
-    if (samples.gnss) prior_tracker_.add_gnss(*samples.gnss);
+  Time gap_end = gap_end_;
+  if (received.received >= gap_end && gap_end_.compare_exchange_strong(gap_end, kNoGap)) {
+    prior_ = new_prior();
+  }
+  if (const auto samples = prior_.input->accept(received)) {
+    if (samples.odometry) prior_.tracker.add_odometry(*samples.odometry);
+    if (samples.gnss) prior_.tracker.add_gnss(*samples.gnss);
     return;
   }
   const auto pose = reader_.accept(received);
@@ -62,14 +69,16 @@ void Judge::take(const can::ReceivedFrame& received) {
 
 void Judge::note_solution(const can::ReceivedFrame& received, bool valid) {
   const auto sent_by_localizer = [&](const can::Message* message) {
-    return message->sender == can::Sender::kLocalizer && message->id(base_) == received.frame.id;
+    return message->sender == can::Sender::kLocalizer &&
+           message->id(can_.base_ids) == received.frame.id;
   };
   if (std::none_of(std::begin(can::kMessages), std::end(can::kMessages), sent_by_localizer)) return;
   ++localizer_frames_;
   if (valid && first_fix_s_ < 0.0)
     first_fix_s_ = to_seconds(received.received - times_.drive_start);
-  const bool completes_solution = received.frame.id == can::loc_integrity::kMessage.id(base_) ||
-                                  received.frame.id == can::loc_solution::kMessage.id(base_);
+  const bool completes_solution =
+      received.frame.id == can::loc_integrity::kMessage.id(can_.base_ids) ||
+      received.frame.id == can::loc_solution::kMessage.id(can_.base_ids);
   if (first_fix_s_ >= 0.0 && completes_solution) ++solutions_since_fix_;
 }
 
@@ -82,7 +91,7 @@ double Judge::valid_share() const {
 }
 
 void Judge::compare(const BusPose& pose) {
-  const auto prior = prior_tracker_.pose_at(pose.received);
+  const auto prior = prior_.tracker.pose_at(pose.received);
   if (!prior) return;
   JudgedPose judged;
   judged.time_s = to_seconds(pose.received - times_.drive_start);

@@ -1,11 +1,13 @@
 // Compares the poses on the bus with the truth, which only the simulator knows.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "can/bus/bus.h"
@@ -45,8 +47,8 @@ struct JudgeView {
 
 /// A passive node on the bus. It reads the poses like any consumer and compares them with the truth
 /// ten times a second. Its own tracker gets the same odometry and GNSS but no corrections, and so
-/// provides the prior. It writes all frames to a candump log. One thread; view() may be called from
-/// any thread.
+/// provides the prior. It writes all frames to a candump log. One thread; note_gap() and view() may
+/// be called from any thread.
 class Judge {
  public:
   using TruthAt = std::function<Se2(double time_s)>;
@@ -59,6 +61,10 @@ class Judge {
 
   /// Reads all received frames. Waits at most `timeout` for the first one.
   void step(Duration timeout);
+
+  /// Tells of a gap of the clock or a suspension that ends at `end`, during which the vehicle
+  /// drives on. The prior begins anew with the first frame after it.
+  void note_gap(Time end) { gap_end_ = end; }
 
   /// Completes the log. Call it after the last step(). Fails if the log lacks a frame.
   Status finish() { return log_.finish(); }
@@ -76,21 +82,34 @@ class Judge {
   uint64_t localizer_frames() const { return localizer_frames_; }
 
  private:
+  static constexpr Time kNoGap = Time::max();
+
+  /// GNSS and odometry alone.
+  struct Prior {
+    explicit Prior(std::unique_ptr<can::VehicleDecoder> decoder) : input(std::move(decoder)) {}
+
+    std::unique_ptr<can::VehicleDecoder> input;
+    Tracker tracker{TrackerParameters()};
+  };
+
   Judge(std::unique_ptr<can::Bus> bus, const firmware::CanConfig& can, const GeoOrigin& origin,
         TruthAt truth, JudgeTimes times, BusLog log);
 
+  Prior new_prior() const;
   void take(const can::ReceivedFrame& received);
   void note_solution(const can::ReceivedFrame& received, bool valid);
   void compare(const BusPose& pose);
 
   std::unique_ptr<can::Bus> bus_;
-  can::BaseIds base_;
+  firmware::CanConfig can_;
+  can::GeodeticPosition map_origin_;
   TruthAt truth_;
   JudgeTimes times_;
   BusLog log_;
   PoseReader reader_;
-  std::unique_ptr<can::VehicleDecoder> prior_input_;
-  Tracker prior_tracker_;
+  Prior prior_;
+  /// The end of a gap that no frame has followed yet; otherwise kNoGap.
+  std::atomic<Time> gap_end_{kNoGap};
   Time next_comparison_;
   std::vector<JudgedPose> poses_;
   ErrorStatistics prior_error_;

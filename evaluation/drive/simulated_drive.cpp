@@ -6,6 +6,7 @@
 #include "drivers/mock/true_rig.h"
 #include "evaluation/drive/configured_world.h"
 #include "evaluation/drive/drive_street.h"
+#include "evaluation/drive/reference_receiver.h"
 #include "sim/faults/drive_clock.h"
 #include "sim/faults/gnss_faults.h"
 #include "sim/faults/map_faults.h"
@@ -32,6 +33,14 @@ Time at(Time drive_start, double time_s) {
 uint64_t reading_index(double elapsed_s, const std::vector<sim::Fault>& clock_faults,
                        double period_s) {
   return static_cast<uint64_t>(std::llround(sim::drive_time_s(elapsed_s, clock_faults) / period_s));
+}
+
+can::WheelOdometry measured_from(const sim::WheelReading& reading) {
+  return {.left_mps = reading.left_mps,
+          .right_mps = reading.right_mps,
+          .yaw_rate_radps = reading.yaw_rate_radps,
+          .front_speed_mps = reading.front_speed_mps,
+          .front_yaw_rate_radps = reading.front_yaw_rate_radps};
 }
 
 GnssSample sample_of(const sim::GnssReading& reading, Time now) {
@@ -83,9 +92,7 @@ void SimulatedVehicle::send_odometry(Time now) {
         odometry_, index, kRearTrack_m,
         sim::in_drive_time(faults_->active(sim::FaultInput::kOdometry, elapsed_s), clock_faults));
     if (reading) {
-      const can::WheelOdometry measured{reading->left_mps, reading->right_mps,
-                                        reading->yaw_rate_radps};
-      send(encoder_.odometry(measured), elapsed_s, now);
+      send(encoder_.odometry(measured_from(*reading)), elapsed_s, now);
     }
     attacker_.act(*faults_, elapsed_s, *bus_, now);
   }
@@ -111,6 +118,10 @@ void SimulatedVehicle::send_gnss(Time now) {
 
 Result<SimulatedDrive> SimulatedDrive::create(const DriveConfig& config) {
   const SimulationConfig& simulation = *config.simulation;
+  for (const sim::Fault& fault : simulation.faults) {
+    const Status expressible = check_expressible(fault, config.can);
+    if (!expressible) return fail("simulation.faults: {}", expressible.error().message);
+  }
   auto world = make_configured_world(config);
   if (!world) return tl::unexpected(world.error());
   struct PhotographedWorld {
@@ -143,6 +154,13 @@ double SimulatedDrive::drive_time_s(double elapsed_s) const {
 
 Se2 SimulatedDrive::truth_at(double elapsed_s) const {
   return drive_->at(drive_time_s(elapsed_s)).map_from_vehicle;
+}
+
+ReferenceTrajectory SimulatedDrive::reference(uint64_t seed, Time drive_start) const {
+  const double suspended_s = sim::added_time_s(faults_->all(sim::FaultInput::kClock));
+  return receive_reference([this](double elapsed_s) { return truth_at(elapsed_s); },
+                           drive_->duration_s() - suspended_s, sim::seed_for(seed, "reference"),
+                           drive_start);
 }
 
 std::vector<std::unique_ptr<drivers::Camera>> SimulatedDrive::make_cameras(

@@ -11,6 +11,7 @@
 #include "evaluation/drive/bus_attacker.h"
 #include "evaluation/drive/drive_config.h"
 #include "evaluation/drive/vehicle_bus_encoder.h"
+#include "pipeline/calibration/reference_trajectory.h"
 #include "sim/faults/fault_board.h"
 #include "sim/sensors/gnss.h"
 #include "sim/sensors/odometry.h"
@@ -21,7 +22,7 @@ namespace bevloc::evaluation {
 /// map, the camera images and the frames on the bus.
 class SimulatedDrive {
  public:
-  /// Fails as make_configured_world() does.
+  /// Fails as make_configured_world() does, and for a fault that the vehicle's bus cannot express.
   static Result<SimulatedDrive> create(const DriveConfig& config);
 
   /// The map that the appliance gets.
@@ -31,6 +32,9 @@ class SimulatedDrive {
   /// Whether the planned drive is over. A suspension that is set while the drive runs makes it end
   /// before the duration of the configuration.
   bool is_over(double elapsed_s) const { return drive_time_s(elapsed_s) >= drive_->duration_s(); }
+  /// What the reference system receives on this drive (reference_receiver.h), in the times of the
+  /// appliance's clock. Call it after the drive, because suspensions may be set while it runs.
+  ReferenceTrajectory reference(uint64_t seed, Time drive_start) const;
   std::shared_ptr<const sim::Drive> drive() const { return drive_; }
   /// The faults of the configuration. More may be set while the drive runs.
   std::shared_ptr<sim::FaultBoard> faults() const { return faults_; }

@@ -11,7 +11,6 @@
 #include "evaluation/drive/jumping_clock.h"
 #include "evaluation/drive/picture_recorder.h"
 #include "evaluation/drive/progress_line.h"
-#include "evaluation/drive/reference_receiver.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "evaluation/drive/snapshot_keeper.h"
 #include "firmware/live/live_server.h"
@@ -20,7 +19,6 @@
 #include "firmware/runtime/calibration_saver.h"
 #include "firmware/runtime/runner.h"
 #include "firmware/runtime/supervisor.h"
-#include "sim/random.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -172,8 +170,8 @@ Status SimulatedRun::connect() {
   }
   const std::filesystem::path& socket = config_.simulation->fault_socket;
   if (socket.empty()) return {};
-  auto server =
-      FaultServer::open(socket, drive_.faults(), drive_.drive()->duration_s(), options_.fast);
+  auto server = FaultServer::open(socket, drive_.faults(),
+                                  {drive_.drive()->duration_s(), options_.fast, config_.can});
   if (!server) return tl::unexpected(server.error());
   fault_server_ = std::move(*server);
   return {};
@@ -237,6 +235,7 @@ void SimulatedRun::run(const StopWhen& stop) {
 void SimulatedRun::suspend_if_due(Time now) {
   const Duration length = clock_faults_.suspension_due(to_seconds(now - drive_start_));
   if (length == Duration::zero()) return;
+  judge_->note_gap(now);
   if (options_.fast) {
     virtual_clock_.suspend(length);
   } else {
@@ -254,6 +253,8 @@ void SimulatedRun::record_truth(Time now) {
 /// Moves the clock by the gap of a clock fault: time passes, but the appliance does not run.
 void SimulatedRun::jump_if_due(double time_s) {
   const Duration gap = clock_faults_.gap_due(time_s);
+  if (gap == Duration::zero()) return;
+  judge_->note_gap(clock_.now() + gap);
   if (options_.fast) {
     virtual_clock_.advance(gap);
   } else {
@@ -263,8 +264,7 @@ void SimulatedRun::jump_if_due(double time_s) {
 
 Status SimulatedRun::finish_recording() {
   if (!recorder_) return {};
-  const uint64_t seed = sim::seed_for(config_.simulation->seed, "reference");
-  return recorder_->finish(receive_reference(*drive_.drive(), seed, drive_start_), drive_.map());
+  return recorder_->finish(drive_.reference(config_.simulation->seed, drive_start_), drive_.map());
 }
 
 DriveReport SimulatedRun::report() const {

@@ -1,5 +1,7 @@
 #include "evaluation/drive/vehicle_bus_encoder.h"
 
+#include "sim/faults/fault_table.h"
+
 namespace bevloc::evaluation {
 namespace {
 
@@ -31,6 +33,16 @@ std::span<const can::Frame> VehicleBusEncoder::gnss(const GnssSample& sample) {
 std::span<const can::Frame> VehicleBusEncoder::keep(std::span<const can::Frame> frames) {
   frames_.assign(frames.begin(), frames.end());
   return frames_;
+}
+
+Status check_expressible(const sim::Fault& fault, const firmware::CanConfig& can) {
+  if (fault.kind != sim::FaultKind::kGnssNoHeading || !can.vehicle || !can.vehicle->gnss) return {};
+  const can::BoundGnss& gnss = *can.vehicle->gnss;
+  if (!gnss.heading || gnss.heading_valid) return {};
+  return fail(
+      "found {}, wanted can.vehicle.gnss.heading_valid too, because without it every heading on "
+      "this bus is valid",
+      sim::info_of(fault.kind).name);
 }
 
 }  // namespace bevloc::evaluation

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "can/messages/vehicle_encoder.h"
+#include "common/result.h"
 #include "evaluation/drive/dbc_vehicle_encoder.h"
 #include "firmware/config/config.h"
+#include "sim/faults/fault.h"
 
 namespace bevloc::evaluation {
 
@@ -31,5 +33,8 @@ class VehicleBusEncoder {
   std::variant<can::VehicleEncoder, DbcVehicleEncoder> encoder_;
   std::vector<can::Frame> frames_;
 };
+
+/// Fails for a fault that the messages of this bus cannot express.
+Status check_expressible(const sim::Fault& fault, const firmware::CanConfig& can);
 
 }  // namespace bevloc::evaluation

@@ -46,6 +46,8 @@ void disturb(WheelReading& reading, const Fault& fault, double time_s) {
   const double factor = speed_factor(fault, time_s);
   reading.left_mps *= factor;
   reading.right_mps *= factor;
+  reading.front_speed_mps *= factor;
+  reading.front_yaw_rate_radps *= factor;
   switch (fault.kind) {
     case FaultKind::kOdometryWheels:
       reading.left_mps = fault.amounts.left_mps;
@@ -74,8 +76,11 @@ std::optional<WheelReading> reading_with_faults(const OdometrySimulator& odometr
       odometry.reading(sent_index(index, OdometrySimulator::kPeriod_s, kOldOdometry, active));
   const double half_difference_mps =
       0.5 * (rear_track_m * sensed.path_yaw_rate_radps + sensed.wheel_excess_mps);
-  WheelReading reading{sensed.speed_mps - half_difference_mps,
-                       sensed.speed_mps + half_difference_mps, sensed.yaw_rate_radps};
+  WheelReading reading{.left_mps = sensed.speed_mps - half_difference_mps,
+                       .right_mps = sensed.speed_mps + half_difference_mps,
+                       .yaw_rate_radps = sensed.yaw_rate_radps,
+                       .front_speed_mps = sensed.speed_mps,
+                       .front_yaw_rate_radps = sensed.path_yaw_rate_radps};
   const double time_s = static_cast<double>(index) * OdometrySimulator::kPeriod_s;
   for (const Fault& fault : active) {
     if (is_silent(fault, index)) return std::nullopt;

@@ -67,22 +67,22 @@ Renderer::Renderer(std::shared_ptr<GroundTiles> ground)
 
 Renderer::~Renderer() = default;
 
-void Renderer::render(const CameraModel& camera, const Se2& map_from_vehicle, const Stance& stance,
-                      double time_s, const Conditions& conditions, uint64_t noise_seed,
-                      RgbImage& image) {
+void Renderer::render(const MountedCamera& camera, const Se2& map_from_vehicle,
+                      const Stance& stance, double time_s, const Conditions& conditions,
+                      uint64_t noise_seed, RgbImage& image) {
   Impl& impl = *impl_;
   const Lighting lighting = lighting_of(conditions);
   impl.enter({map_from_vehicle, time_s, conditions}, lighting);
-  const View view = make_view(impl.rays.rays_of(camera.intrinsics), camera.vehicle_from_camera,
-                              map_from_vehicle, stance);
+  const View view = make_view(impl.rays.rays_of(camera.now.intrinsics),
+                              camera.now.vehicle_from_camera, map_from_vehicle, stance);
   impl.linear.resize(view.width(), view.height());
   impl.ground.open(view.position.head<2>());
   draw_ground_and_sky(view, lighting, impl.light, impl.sky, impl.ground, impl.linear);
   impl.ground.close();
   draw_panels(view, lighting, impl.panels.build(view.position, view.ground, impl.surroundings),
               impl.linear);
-  develop(view, lighting, sensor_of(impl.ground.world().seed, camera), noise_seed, impl.linear,
-          image);
+  develop(view, lighting, sensor_of(impl.ground.world().seed, camera.built_in), noise_seed,
+          impl.linear, image);
 }
 
 }  // namespace bevloc::sim

@@ -6,8 +6,8 @@
 
 #include "common/image.h"
 #include "common/se2.h"
-#include "pipeline/calibration/camera_model.h"
 #include "sim/render/conditions.h"
+#include "sim/render/mounted_camera.h"
 #include "sim/vehicle/stance.h"
 #include "sim/world/world.h"
 
@@ -27,7 +27,7 @@ class Renderer {
   /// Renders one image. `camera` is the true camera, which may differ from the calibration that the
   /// localizer gets. `map_from_vehicle` must be finite. `time_s` places the traffic. `noise_seed`
   /// affects nothing but the pixel noise. `image` is resized to the camera's size if necessary.
-  void render(const CameraModel& camera, const Se2& map_from_vehicle, const Stance& stance,
+  void render(const MountedCamera& camera, const Se2& map_from_vehicle, const Stance& stance,
               double time_s, const Conditions& conditions, uint64_t noise_seed, RgbImage& image);
 
  private:

@@ -79,6 +79,15 @@ Interpolated<T> hermite(const T& a, const T& slope_a, const T& b, const T& slope
                    (3.0 * t2 - 2.0 * t) * slope_b};
 }
 
+/// The share of the top speed for which the route is planned. It depends on the fastest lane. The
+/// least share is enough for every town, so their routes depend on the seed alone.
+double planned_share(const HdMap& map) {
+  constexpr double kLeastShare = 0.8;
+  double fastest_mps = 0.0;
+  for (const Lane& lane : map.lanes) fastest_mps = std::max(fastest_mps, lane.speed_limit_mps);
+  return std::clamp(fastest_mps / kTopSpeed_mps, kLeastShare, 1.0);
+}
+
 // Wavelengths of the road's height.
 constexpr double kShortestSlope_m = 80.0;
 constexpr double kLongestSlope_m = 400.0;
@@ -99,8 +108,8 @@ Drive::Drive(const World& world, uint64_t seed, double duration_s, const StopTim
       twist_noise_(seed_for(seed, "twist"), 1.0, kShortestSlope_m, kLongestSlope_m) {
   assert(!world.map.lanes.empty());
   Random random(seed_for(seed, "route"));
-  const std::vector<uint32_t> route =
-      random_lane_route(world.map, duration_s * kTopSpeed_mps * 0.8 + 50.0, random);
+  const double length_m = duration_s * kTopSpeed_mps * planned_share(world.map) + 50.0;
+  const std::vector<uint32_t> route = random_lane_route(world.map, length_m, random);
   lay_path(world.map, route);
   measure_path();
   const std::vector<Stop> stops = choose_stops(world.map, route, times);

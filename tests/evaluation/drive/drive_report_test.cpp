@@ -1,7 +1,11 @@
 #include "evaluation/drive/drive_report.h"
 
+#include <sstream>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/text.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -23,6 +27,20 @@ TEST(DriveReportTest, ShowsTheErrorsOfValidPoses) {
   report.poses.emplace_back();
   EXPECT_EQ(nlohmann::json::parse(to_json(report))["estimate"]["lateral_m"]["mae"], 0.125);
   EXPECT_NE(to_table(report).find("0.125"), std::string::npos);
+}
+
+TEST(DriveReportTest, ThePageNamesEveryKeyOfTheJson) {
+  const std::filesystem::path tree = BEVLOC_SOURCE_DIR;
+  const std::string page = test::read_text(tree / "docs/simulation.md");
+  DriveReport report;
+  report.poses.emplace_back();  // so that the errors are there
+  const auto json = nlohmann::json::parse(to_json(report)).flatten();
+  for (const auto& [path, value] : json.items()) {
+    std::istringstream keys(path.substr(1));  // such as estimate/lateral_m/mae
+    for (std::string key; std::getline(keys, key, '/');) {
+      EXPECT_NE(page.find('`' + key + '`'), std::string::npos) << key;
+    }
+  }
 }
 
 }  // namespace

@@ -15,10 +15,16 @@ using testing::HasSubstr;
 /// The length of the planned drive.
 constexpr double kPlanned_s = 80.0;
 
+firmware::CanConfig own_bus_without_heading_valid() {
+  firmware::CanConfig can;
+  can.vehicle.emplace().gnss.emplace().heading = 0;
+  return can;
+}
+
 class FaultSocketTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto server = FaultServer::open(path_, faults_, kPlanned_s, true);
+    auto server = FaultServer::open(path_, faults_, {kPlanned_s, true, can_});
     ASSERT_TRUE(server) << server.error().message;
     server_ = std::move(*server);
   }
@@ -39,6 +45,7 @@ class FaultSocketTest : public testing::Test {
 
   const test::TemporaryFolder folder_;
   const std::filesystem::path path_ = folder_ / "socket";
+  const firmware::CanConfig can_ = own_bus_without_heading_valid();
   const std::shared_ptr<sim::FaultBoard> faults_ = std::make_shared<sim::FaultBoard>();
   std::unique_ptr<FaultServer> server_;
 };
@@ -63,6 +70,8 @@ TEST_F(FaultSocketTest, SaysWhyACommandIsRefused) {
   EXPECT_THAT(error_of("set gnss_jump up_m=3"), HasSubstr("up_m"));
   EXPECT_THAT(error_of("set map_shifted east_m=3"), HasSubstr("simulation.faults"));
   EXPECT_THAT(error_of("set hang_vision"), HasSubstr("--fast"));
+  EXPECT_THAT(error_of("set gnss_no_heading"),
+              HasSubstr("found gnss_no_heading, wanted can.vehicle.gnss.heading_valid"));
   EXPECT_THAT(error_of("clear 7"), HasSubstr("found 7"));
   EXPECT_THAT(error_of("clear all"), HasSubstr("found all"));
   EXPECT_TRUE(faults_->list().empty());
@@ -80,7 +89,7 @@ TEST_F(FaultSocketTest, RefusesASuspensionBeyondTheEndOfTheDrive) {
 }
 
 TEST_F(FaultSocketTest, AServerReplacesTheSocketOfAnEarlierRunAndRemovesItsOwn) {
-  const auto second = FaultServer::open(path_, faults_, kPlanned_s, true);
+  const auto second = FaultServer::open(path_, faults_, {kPlanned_s, true, can_});
   EXPECT_TRUE(second);
   server_.reset();
   EXPECT_FALSE(std::filesystem::exists(path_));

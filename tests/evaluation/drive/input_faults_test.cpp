@@ -8,25 +8,16 @@
 #include "evaluation/drive/faulty_bus.h"
 #include "evaluation/drive/simulated_drive.h"
 #include "sim/faults/fault_table.h"
+#include "tests/evaluation/drive/drive_with_faults.h"
 
 namespace bevloc::evaluation {
 namespace {
 
 using sim::FaultKind;
 using sim::make_fault;
+using test::drive_with_faults;
 
 constexpr Time kStart{std::chrono::seconds(100)};
-
-DriveConfig config_with(const std::vector<sim::Fault>& faults) {
-  DriveConfig config;
-  config.cameras.rate_hz = 10.0;
-  config.simulation.emplace();
-  config.simulation->seed = 2005;
-  config.simulation->town_seed = 2005;
-  config.simulation->duration_s = 20.0;
-  config.simulation->faults = faults;
-  return config;
-}
 
 struct Odometry {
   Time time;
@@ -110,7 +101,7 @@ class Reader {
 };
 
 Received drive_with(const std::vector<sim::Fault>& faults) {
-  const DriveConfig config = config_with(faults);
+  const DriveConfig config = drive_with_faults(faults);
   const auto drive = SimulatedDrive::create(config);
   EXPECT_TRUE(drive) << drive.error().message;
   can::MockWire wire(4096);
@@ -190,7 +181,7 @@ TEST(InputFaults, AfterASuspensionTheVehicleIsElsewhere) {
 }
 
 TEST(InputFaults, ASuspensionThatIsSetLaterShortensTheDrive) {
-  const auto drive = SimulatedDrive::create(config_with({}));
+  const auto drive = SimulatedDrive::create(drive_with_faults({}));
   ASSERT_TRUE(drive) << drive.error().message;
   const double length_s = drive->drive()->duration_s();
   EXPECT_GT(length_s, 20.0) << "it goes on beyond its configured duration";
@@ -279,9 +270,9 @@ TEST(FaultyBusTest, OldFramesReachTheWireAfterALackOfAcknowledgement) {
 }
 
 TEST(InputFaults, TheApplianceGetsTheFaultyMapAndTheWorldStays) {
-  const auto drive = SimulatedDrive::create(
-      config_with({with(make_fault(FaultKind::kMapShifted), &sim::FaultAmounts::north_m, 3.0)}));
-  const auto good = SimulatedDrive::create(config_with({}));
+  const auto drive = SimulatedDrive::create(drive_with_faults(
+      {with(make_fault(FaultKind::kMapShifted), &sim::FaultAmounts::north_m, 3.0)}));
+  const auto good = SimulatedDrive::create(drive_with_faults({}));
   ASSERT_TRUE(drive && good);
   EXPECT_NEAR(drive->map().elements[0].points[0].y() - good->map().elements[0].points[0].y(), 3.0,
               1e-9);

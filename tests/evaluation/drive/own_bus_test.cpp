@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "can/bus/mock_bus.h"
@@ -124,6 +125,69 @@ TEST(OwnBusTest, GivesTheSamplesOfTheStandardMessagesWithoutAllocation) {
       EXPECT_NEAR(gnss.yaw->yaw_rad, other.yaw->yaw_rad, radians(0.011));
     }
   }
+}
+
+sim::Fault yaw_rate_bias(double from_s) {
+  sim::Fault bias = sim::make_fault(sim::FaultKind::kYawRateBias, from_s);
+  bias.amounts.bias_degps = 3.0;
+  return bias;
+}
+
+/// The frames with the front wheels during the first 4 seconds.
+std::vector<can::Frame> front_wheels_with(const std::vector<sim::Fault>& faults) {
+  DriveConfig config = config_of("demo_own_bus.yaml");
+  config.simulation->faults = faults;
+  const auto drive = SimulatedDrive::create(config);
+  EXPECT_TRUE(drive) << drive.error().message;
+  const auto message =
+      std::ranges::find(config.can.vehicle->messages, "ESP_WheelsFront", &can::BoundMessage::name);
+  EXPECT_NE(message, config.can.vehicle->messages.end());
+  can::MockWire wire(4096);
+  const auto bus = wire.connect();
+  SimulatedVehicle vehicle(*drive, 1, config.can, wire.connect(), kStart);
+  vehicle.send_due(kStart + std::chrono::seconds(4));
+  std::vector<can::Frame> frames;
+  while (const auto received = bus->receive()) {
+    if (received->frame.id == message->id) frames.push_back(received->frame);
+  }
+  return frames;
+}
+
+TEST(OwnBusTest, AFaultOfTheYawRateOrOfTheRearWheelsLeavesTheFrontWheels) {
+  const std::vector<can::Frame> healthy = front_wheels_with({});
+  EXPECT_GT(healthy.size(), 190U);
+  sim::Fault rear = sim::make_fault(sim::FaultKind::kOdometryWheels);
+  rear.amounts.left_mps = 22.2;
+  EXPECT_EQ(front_wheels_with({yaw_rate_bias(0.0)}), healthy);
+  EXPECT_EQ(front_wheels_with({rear}), healthy);
+  sim::Fault spinning = sim::make_fault(sim::FaultKind::kOdometrySlip);
+  EXPECT_NE(front_wheels_with({spinning}), healthy) << "all wheels spin";
+}
+
+TEST(OwnBusTest, AWrongYawRateContradictsTheFourWheelsWithinASecond) {
+  constexpr double kFrom_s = 10.0;
+  DriveConfig config = config_of("demo_own_bus.yaml");
+  config.simulation->faults = {yaw_rate_bias(kFrom_s)};
+  const auto cycles = cycles_of(config);
+  const auto noticed = std::ranges::find_if(
+      cycles, [](const JudgedCycle& cycle) { return cycle.why.has(Why::kOdometryImplausible); });
+  ASSERT_NE(noticed, cycles.end());
+  EXPECT_GE(noticed->time_s, kFrom_s);
+  EXPECT_LT(noticed->time_s, kFrom_s + 1.0);
+}
+
+TEST(OwnBusTest, AHeadingThatIsAlwaysValidCannotBeMissing) {
+  DriveConfig config = config_of("demo_own_bus.yaml");
+  config.simulation->faults = {sim::make_fault(sim::FaultKind::kGnssNoHeading)};
+  EXPECT_TRUE(SimulatedDrive::create(config));
+  config.can.vehicle->gnss->heading_valid.reset();
+  const auto refused = SimulatedDrive::create(config);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              testing::HasSubstr("simulation.faults: found gnss_no_heading, wanted "
+                                 "can.vehicle.gnss.heading_valid"));
+  config.can.vehicle->gnss->heading.reset();
+  EXPECT_TRUE(SimulatedDrive::create(config)) << "this bus has no heading at all";
 }
 
 /// What the appliance reads during the first 8 seconds.

@@ -196,6 +196,27 @@ TEST_F(VehicleFaults, WheelsAndYawRateCanContradictEachOther) {
   EXPECT_DOUBLE_EQ(odometry(scaled, 400).yaw_rate_radps, -good.yaw_rate_radps);
 }
 
+TEST_F(VehicleFaults, FrontWheelsShowTheTrueMotionAndSpinWithTheRearOnes) {
+  const size_t index = driving_index();
+  const OdometryReading sensed = odometry_.reading(index);
+  const WheelReading good = healthy(index);
+  EXPECT_EQ(good.front_speed_mps, sensed.speed_mps);
+  EXPECT_EQ(good.front_yaw_rate_radps, sensed.path_yaw_rate_radps);
+  Fault wrong = make_fault(FaultKind::kYawRateWrong);
+  wrong.amounts.yaw_rate_degps = 160.0;
+  Fault wheels = make_fault(FaultKind::kOdometryWheels);
+  wheels.amounts.left_mps = 22.0;
+  for (const Fault& fault : {wrong, wheels}) {
+    const WheelReading bad = odometry(fault, index);
+    EXPECT_EQ(bad.front_speed_mps, good.front_speed_mps) << info_of(fault.kind).name;
+    EXPECT_EQ(bad.front_yaw_rate_radps, good.front_yaw_rate_radps) << info_of(fault.kind).name;
+  }
+  Fault scaled = make_fault(FaultKind::kOdometryScaled);
+  scaled.amounts.factor = 1.5;
+  EXPECT_DOUBLE_EQ(odometry(scaled, index).front_speed_mps, 1.5 * good.front_speed_mps);
+  EXPECT_DOUBLE_EQ(odometry(scaled, index).front_yaw_rate_radps, 1.5 * good.front_yaw_rate_radps);
+}
+
 TEST_F(VehicleFaults, SlowOdometryIsSentOncePerPeriodAndMissingOdometryNever) {
   const auto sent = [&](const Fault& fault) {
     int count = 0;

@@ -184,6 +184,22 @@ TEST(Drive, StopsWhereTheMapEnds) {
   EXPECT_NEAR(drive.at(-5.0).map_from_vehicle.x_m, 0.0, 0.1);
 }
 
+TEST(Drive, TheRouteOfAFastRoadLastsForTheWholeDrive) {
+  constexpr double kDuration_s = 600.0;
+  constexpr double kLane_m = 100.0;
+  World world;
+  world.map.lanes.resize(200);
+  for (uint32_t i = 0; i < world.map.lanes.size(); ++i) {
+    Lane& lane = world.map.lanes[i];
+    lane.centerline = {{kLane_m * i, 0.0}, {kLane_m * (i + 1), 0.0}};
+    lane.speed_limit_mps = 36.0;
+    if (i + 1 < world.map.lanes.size()) lane.successors = {i + 1};
+  }
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    EXPECT_GT(Drive(world, seed, kDuration_s).at(kDuration_s - 1.0).speed_mps, 10.0) << seed;
+  }
+}
+
 TEST(Route, AvoidsDeadEndsAndPrefersNewLanes) {
   // 0 -> {1, 2}, 1 -> 0; lane 2 is a dead end.
   HdMap map;
