@@ -47,6 +47,17 @@ std::string cameras_text(const Answers& answers) {
   return text;
 }
 
+std::string map_text(const std::filesystem::path& map, const std::filesystem::path& folder) {
+  if (map.empty()) {
+    return "\n# A simulated town. Another number is another town.\n"
+           "map:\n  procedural_seed: 7\n";
+  }
+  return fmt::format(
+      "\n# The HD map, in any format of docs/maps.md.\n"
+      "map:\n  file: {}\n",
+      path_text(map, folder));
+}
+
 std::string can_text(const std::string& interface) {
   if (interface == kMockCameras) {
     return "# A bus inside the process; its frames are written to can.log.\n"
@@ -75,14 +86,7 @@ std::string configuration_text(const Answers& answers, const std::filesystem::pa
       "\n# The calibration of the six cameras (docs/bring-your-own.md).\n"
       "calibration:\n  rig: {}\n",
       path_text(answers.rig, folder));
-  text += answers.map.empty()
-              ? std::string(
-                    "\n# A simulated town. Another number is another town.\n"
-                    "map:\n  procedural_seed: 7\n")
-              : fmt::format(
-                    "\n# The HD map: Lanelet2 (.osm) or bevloc's own format (.bvm).\n"
-                    "map:\n  file: {}\n",
-                    path_text(answers.map, folder));
+  text += map_text(answers.map, folder);
   text += fmt::format("\nmodel:\n  file: {}\n\n", path_text(answers.model, folder));
   text += can_text(answers.can);
   if (answers.driver == kMockCameras) {

@@ -13,6 +13,7 @@
 #include "evaluation/calib/calib_report.h"
 #include "evaluation/calib/folder_recording.h"
 #include "evaluation/calib/kept_frameset.h"
+#include "evaluation/check_outputs.h"
 #include "evaluation/progress_bar.h"
 #include "pipeline/calibration/import/import_rig.h"
 #include "pipeline/calibration/refine/refine_rig.h"
@@ -50,18 +51,6 @@ Result<ParameterSet> free_parameters(const std::vector<std::string>& keep) {
     }
   }
   return free;
-}
-
-/// The time offsets, which a rig file cannot hold.
-void print_time_offsets(const RigRefinement& refinement) {
-  for (int c = 0; c < kCameraCount; ++c) {
-    const double offset_s = refinement.cameras[c].change[kTimeOffset];
-    if (std::abs(offset_s) < 3.0 * refinement.cameras[c].sigma[kTimeOffset]) continue;
-    fmt::print(
-        "{}: pictures are taken {:.1f} ms {} than their time stamps say; correct the time stamps "
-        "where they are made, because a rig file has no time offset\n",
-        kCameraNames[c], 1e3 * std::abs(offset_s), offset_s > 0.0 ? "later" : "earlier");
-  }
 }
 
 }  // namespace
@@ -204,6 +193,11 @@ Result<bool> CalibCommand::run_on_pictures() const {
   const MapIndex index(*map);
   auto recording = FolderRecording::open(folder_, *rig, from_seconds(interval_s_));
   if (!recording) return tl::unexpected(recording.error());
+  std::vector<std::filesystem::path> inputs = (*recording)->files();
+  inputs.insert(inputs.end(), {rig_file_, map_file_});
+  if (Status others = check_outputs({json_file_, picture_file_}, inputs); !others) {
+    return tl::unexpected(others.error());
+  }
   RefinementOptions options;
   options.reference_position_m = reference_position_m_;
   options.reference_yaw_rad = radians(reference_yaw_deg_);
@@ -219,7 +213,7 @@ Result<bool> CalibCommand::run_on_pictures() const {
   const CalibrationCheck check{*refinement, folder_, (*recording)->cameras()};
   fmt::print("{}", check_ ? text_of(check) : text_of(*refinement));
   const Rig after = refined(*rig, *refinement);
-  if (refine_) print_time_offsets(*refinement);
+  if (refine_) fmt::print("{}", time_offsets_of(*refinement));
   if (Status s = write_refined(after); !s) return tl::unexpected(s.error());
   const nlohmann::json json = check_ ? json_of(check) : json_of(*refinement);
   if (Status s = write_option_file(json_file_, json_document(json)); !s) {

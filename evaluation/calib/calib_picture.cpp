@@ -15,6 +15,16 @@ constexpr int kGap_px = 8;
 constexpr int kTitle_px = 40;
 constexpr int kPicturesPerRow = 3;
 
+/// Writes a camera's name with a dark border, so that it is read on a bright sky, too.
+void write_name(std::string_view name, cv::Mat& picture) {
+  const cv::Scalar black(0, 0, 0);
+  const cv::Scalar yellow(0, 255, 255);
+  for (const auto& [color, thickness_px] : {std::pair(black, 3), std::pair(yellow, 1)}) {
+    cv::putText(picture, std::string(name), {10, 24}, cv::FONT_HERSHEY_SIMPLEX, 0.6, color,
+                thickness_px, cv::LINE_AA);
+  }
+}
+
 void draw_picture(const CalibrationView& view, const RecordedPicture& picture,
                   const ReferenceTrajectory& reference, const MapIndex& map, cv::Mat place) {
   cv::Mat grey(picture.image.height, picture.image.width, CV_8UC1,
@@ -25,8 +35,7 @@ void draw_picture(const CalibrationView& view, const RecordedPicture& picture,
   const auto pose = reference.at(picture.time + from_seconds(offset_s));
   if (pose) draw_map_over_image(map, *pose, view.rig.cameras[picture.camera], shown);
   cv::resize(shown, place, place.size(), 0, 0, cv::INTER_AREA);
-  cv::putText(place, std::string(kCameraNames[picture.camera]), {10, 24}, cv::FONT_HERSHEY_SIMPLEX,
-              0.6, cv::Scalar(0, 255, 255), 1, cv::LINE_AA);
+  write_name(kCameraNames[picture.camera], place);
 }
 
 }  // namespace

@@ -162,6 +162,21 @@ std::string text_of(const RigRefinement& refinement) {
   return text + "\n";
 }
 
+std::string time_offsets_of(const RigRefinement& refinement) {
+  std::string text;
+  for (size_t c = 0; c < kCameraCount; ++c) {
+    const CameraRefinement& camera = refinement.cameras[c];
+    if (camera.kept[kTimeOffset] || camera.unobservable[kTimeOffset]) continue;
+    const double offset_s = camera.change[kTimeOffset];
+    if (std::abs(offset_s) < 3.0 * camera.sigma[kTimeOffset]) continue;
+    text += fmt::format(
+        "{}: pictures are taken {:.1f} ms {} than their time stamps say; correct the time stamps "
+        "where they are made, because a rig file has no time offset\n",
+        kCameraNames[c], 1e3 * std::abs(offset_s), offset_s > 0.0 ? "later" : "earlier");
+  }
+  return text;
+}
+
 nlohmann::json json_of(const RigRefinement& refinement) {
   nlohmann::json json{{"framesets", refinement.frames}};
   for (int c = 0; c < kCameraCount; ++c) {

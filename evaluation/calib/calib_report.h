@@ -33,6 +33,8 @@ bool all_good(const CalibrationCheck& check);
 
 std::string text_of(const CalibrationCheck& check);
 std::string text_of(const RigRefinement& refinement);
+/// A line for each camera whose time offset was found, because a rig file cannot hold it.
+std::string time_offsets_of(const RigRefinement& refinement);
 nlohmann::json json_of(const RigRefinement& refinement);
 /// With a verdict on each camera.
 nlohmann::json json_of(const CalibrationCheck& check);

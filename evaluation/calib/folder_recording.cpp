@@ -7,6 +7,7 @@
 namespace bevloc::evaluation {
 namespace {
 
+constexpr const char* kIndexOfCamera = "frames.txt";
 constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
 
 bool holds_recordings(const std::filesystem::path& folder) {
@@ -29,17 +30,22 @@ Result<std::unique_ptr<FolderRecording>> FolderRecording::open(const std::filesy
   const auto recorded = drivers::load_recordings(folder);
   if (!recorded) return tl::unexpected(recorded.error());
   Frames frames;
+  std::vector<std::filesystem::path> files{folder / kReferenceFile};
   for (int camera = 0; camera < kCameraCount; ++camera) {
+    files.push_back(folder / kCameraNames[camera] / kIndexOfCamera);
     for (const drivers::RecordedFrame& frame : (*recorded)[camera]) {
       frames.push_back({camera, frame});
+      files.push_back(frame.file);
     }
   }
   if (frames.empty()) {
     return fail("{}: found no folder of a camera, wanted folders such as {}", folder.string(),
                 kCameraNames[1]);
   }
-  return std::unique_ptr<FolderRecording>(
+  std::unique_ptr<FolderRecording> opened(
       new FolderRecording(rig, std::move(*reference), interval, std::move(frames)));
+  opened->files_ = std::move(files);
+  return opened;
 }
 
 FolderRecording::FolderRecording(const Rig& rig, ReferenceTrajectory reference, Duration interval,

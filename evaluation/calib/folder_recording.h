@@ -24,6 +24,8 @@ class FolderRecording final : public PictureRecording {
 
   /// The cameras that have pictures in the folder.
   CameraMask cameras() const { return cameras_; }
+  /// The files of the folder that are read.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
 
   const ReferenceTrajectory& reference() const override { return reference_; }
   int framesets() const override { return static_cast<int>(framesets_.size()); }
@@ -41,6 +43,7 @@ class FolderRecording final : public PictureRecording {
 
   const Rig rig_;
   const ReferenceTrajectory reference_;
+  std::vector<std::filesystem::path> files_;
   CameraMask cameras_;
   std::vector<Frames> framesets_;
   size_t next_ = 0;

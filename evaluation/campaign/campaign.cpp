@@ -25,17 +25,30 @@ sim::Pace later(std::vector<sim::PacePoint> points, double from_s) {
 
 }  // namespace
 
-Result<Campaign> Campaign::create(const std::string& config_file, const std::string& table_file,
-                                  const CampaignOptions& options) {
-  auto config = load_drive_config(given_or_shipped(config_file));
-  if (!config) return tl::unexpected(config.error());
+Result<DriveConfig> load_faultless_config(const std::string& file, std::string_view why_no_faults) {
+  auto config = load_drive_config(given_or_shipped(file));
+  if (!config) return config;
   if (!config->simulation) {
-    return fail("{}: found cameras that are not mock, wanted mock ones", config_file);
+    return fail("{}: found cameras that are not mock, wanted mock ones", file);
   }
   if (!config->simulation->faults.empty()) {
-    return fail("{}: found simulation.faults, wanted none, because each mode has its own",
-                config_file);
+    return fail("{}: found simulation.faults, wanted none, because {}", file, why_no_faults);
   }
+  return config;
+}
+
+DriveConfig config_of_drive(DriveConfig config, uint64_t seed, const std::string& map) {
+  config.simulation->seed = seed;
+  if (!map.empty()) config.map_file = map;
+  config.simulation->town_seed.reset();
+  if (config.map_file.empty()) config.simulation->town_seed = seed;
+  return config;
+}
+
+Result<Campaign> Campaign::create(const std::string& config_file, const std::string& table_file,
+                                  const CampaignOptions& options) {
+  auto config = load_faultless_config(config_file, "each mode has its own");
+  if (!config) return tl::unexpected(config.error());
   auto rig = read_rig(config->rig_file);
   if (!rig) return tl::unexpected(rig.error());
   config->simulation->duration_s = options.duration_s;
@@ -53,11 +66,7 @@ Result<Campaign> Campaign::create(const std::string& config_file, const std::str
 Status Campaign::drive(const Mode& mode, uint64_t seed, const std::string& map,
                        const CycleSink& sink,
                        const std::shared_ptr<drivers::PictureCache>& pictures) const {
-  DriveConfig config = config_;
-  config.simulation->seed = seed;
-  if (!map.empty()) config.map_file = map;
-  config.simulation->town_seed.reset();
-  if (config.map_file.empty()) config.simulation->town_seed = seed;
+  DriveConfig config = config_of_drive(config_, seed, map);
   const FaultTime time = mode.time_in(options_.duration_s);
   config.simulation->faults = timed(mode.faults, time);
   if (!mode.pace.empty()) config.simulation->pace = later(mode.pace, time.from_s);

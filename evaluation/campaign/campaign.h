@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/result.h"
@@ -25,6 +26,15 @@ struct CampaignOptions {
   std::string map;  ///< drive through this map instead of procedural towns
 };
 
+/// Loads the configuration of drives that have no fault of their own. `why_no_faults` completes
+/// "found simulation.faults, wanted none, because". Fails unless the cameras are mock.
+Result<DriveConfig> load_faultless_config(const std::string& file, std::string_view why_no_faults);
+
+/// Returns the configuration of one drive: with this seed, and through `map` if it is not empty.
+/// Otherwise the drive goes through the map of `config`, or through the procedural town of the seed
+/// if `config` names no map.
+DriveConfig config_of_drive(DriveConfig config, uint64_t seed, const std::string& map);
+
 struct CampaignRow {
   const Mode* mode = nullptr;
   uint64_t seed = 0;
@@ -43,8 +53,8 @@ class Campaign {
   /// What all drives have in common. Their towns, maps and faults differ.
   const DriveConfig& config() const { return config_; }
 
-  /// One run, through a procedural town, or through `map` if it is not empty. Every cycle goes to
-  /// `sink`. `pictures`: the cache that runs of the same seed and map share; null without a cache.
+  /// One run, through the map that config_of_drive() chooses. Every cycle goes to `sink`.
+  /// `pictures`: the cache that runs of the same seed and map share; null without a cache.
   Status drive(const Mode& mode, uint64_t seed, const std::string& map, const CycleSink& sink,
                const std::shared_ptr<drivers::PictureCache>& pictures = nullptr) const;
 

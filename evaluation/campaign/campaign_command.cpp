@@ -43,7 +43,9 @@ Status CampaignCommand::list() const {
 
 Status CampaignCommand::run() const {
   if (list_) return list();
-  const auto loaded = inputs_.load();
+  std::vector<std::string> maps;
+  if (!inputs_.options.map.empty()) maps.push_back(inputs_.options.map);
+  const auto loaded = inputs_.load(maps, json_file_);
   if (!loaded) return tl::unexpected(loaded.error());
   fmt::print("{}", text_head());
   std::vector<CampaignRow> rows;

@@ -9,7 +9,7 @@
 //   modelled_vision   in place of cameras and network; modes/match_fault.h: its faults
 //   match_model       replays measured matches; match_table, match_recorder: how they are measured
 //   cycle_reader      reads every pose from the bus and compares it with the truth
-//   run_outcome       what a run shows
+//   run_outcome       what a run shows; protection_counts: how it keeps the protection levels
 #pragma once
 
 #include <string>

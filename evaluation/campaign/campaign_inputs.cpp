@@ -5,7 +5,11 @@
 #include <spdlog/spdlog.h>
 
 #include "common/option_checks.h"
+#include "common/output_file.h"
+#include "common/shipped_file.h"
 #include "evaluation/choice_option.h"
+#include "evaluation/drivable_map.h"
+#include "evaluation/files_of_config.h"
 #include "evaluation/town_seeds.h"
 
 namespace bevloc::evaluation {
@@ -32,7 +36,8 @@ void CampaignInputs::declare(CLI::App& command) {
       ->default_str(kShippedTable);
 }
 
-Result<LoadedCampaign> CampaignInputs::load() const {
+Result<LoadedCampaign> CampaignInputs::load(const std::vector<std::string>& maps,
+                                            const std::string& out) const {
   if (Status towns = check_town_seeds("--first-seed", options.first_seed, options.seeds); !towns) {
     return tl::unexpected(towns.error());
   }
@@ -45,8 +50,14 @@ Result<LoadedCampaign> CampaignInputs::load() const {
   spdlog::set_level(spdlog::level::err);
   auto chosen = modes_named(modes, options.level);
   if (!chosen) return tl::unexpected(chosen.error());
-  auto campaign = Campaign::create(config, table.empty() ? kShippedTable : table, options);
+  if (Status drivable = check_drivable(maps); !drivable) return tl::unexpected(drivable.error());
+  const std::string used_table = given_or_shipped(table.empty() ? kShippedTable : table);
+  auto campaign = Campaign::create(config, used_table, options);
   if (!campaign) return tl::unexpected(campaign.error());
+  std::vector<std::filesystem::path> inputs = files_of(campaign->config());
+  inputs.insert(inputs.end(), maps.begin(), maps.end());
+  inputs.emplace_back(used_table);
+  if (Status other = check_output(out, inputs); !other) return tl::unexpected(other.error());
   return LoadedCampaign{std::move(*campaign), std::move(*chosen)};
 }
 

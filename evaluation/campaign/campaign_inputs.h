@@ -28,9 +28,11 @@ struct CampaignInputs {
   void declare(CLI::App& command);
 
   /// Loads the campaign and finds its modes. From then on only errors are logged, because runs with
-  /// faults log much. Fails for seeds of training, for an unknown mode, for a table that the level
-  /// does not use, and as Campaign::create() does.
-  Result<LoadedCampaign> load() const;
+  /// faults log much. `maps`: what the drives may go through, beside the map of the configuration.
+  /// `out`: the file that the command writes; may be empty. Fails for seeds of training, for an
+  /// unknown mode, for a table that the level does not use, for a map on which nothing can drive,
+  /// if `out` is a file that is read, and as Campaign::create() does.
+  Result<LoadedCampaign> load(const std::vector<std::string>& maps, const std::string& out) const;
 };
 
 }  // namespace bevloc::evaluation

@@ -52,10 +52,10 @@ json json_of(const CampaignRow& row, Level level) {
   object["within_1_sigma"] = shares_of(outcome.within_sigma[0], outcome.valid);
   object["within_2_sigma"] = shares_of(outcome.within_sigma[1], outcome.valid);
   object["within_3_sigma"] = shares_of(outcome.within_sigma[2], outcome.valid);
-  object["with_protection_level"] = outcome.with_level;
-  object["misleading"] = outcome.misleading;
-  object["hazardous"] = outcome.hazardous;
-  object["protection_under_alert_limit"] = outcome.available;
+  object["with_protection_level"] = outcome.protection.with_level;
+  object["misleading"] = outcome.protection.misleading;
+  object["hazardous"] = outcome.protection.hazardous;
+  object["protection_under_alert_limit"] = outcome.protection.available;
   return object;
 }
 

@@ -33,7 +33,7 @@ void IntegrityCommand::declare(CLI::App& eval) {
 Status IntegrityCommand::run() const {
   const CampaignOptions& options = inputs_.options;
   if (Status driven = check_map_turns(maps_, "--drives", options.seeds); !driven) return driven;
-  const auto loaded = inputs_.load();
+  const auto loaded = inputs_.load(maps_, json_file_);
   if (!loaded) return tl::unexpected(loaded.error());
   std::vector<NamedDiagram> diagrams{{"no fault", {}}, {"with faults", {}}};
   const int runs = options.seeds * static_cast<int>(loaded->modes.size());

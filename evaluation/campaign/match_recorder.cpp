@@ -9,6 +9,7 @@
 #include "drivers/mock/mock_scene.h"
 #include "drivers/mock/true_rig.h"
 #include "evaluation/drive/configured_world.h"
+#include "evaluation/drive/drive_street.h"
 #include "firmware/config/localizer_options.h"
 #include "firmware/runtime/appliance.h"
 #include "sim/random.h"
@@ -41,7 +42,8 @@ class RecordedDrive {
         true_rig_(drivers::true_rig(rig, config.simulation->calibration_error,
                                     sim::seed_for(config.simulation->seed, "calibration"))),
         scene_(world_, drive_, config.simulation->conditions,
-               sim::seed_for(config.simulation->seed, "pixel noise")) {}
+               sim::seed_for(config.simulation->seed, "pixel noise"), nullptr,
+               street_of(config.simulation->street, config.simulation->seed)) {}
 
   const HdMap& map() const { return world_->map; }
   sim::Drive::State at(double time_s) const { return drive_->at(time_s); }
@@ -139,6 +141,12 @@ class MatchRecorder {
 Result<std::vector<MeasuredPlace>> record_matches(const DriveConfig& config, const Rig& rig,
                                                   int drive,
                                                   const std::function<void(double)>& at_time_s) {
+  if (!config.simulation->street.photos.empty()) {
+    return fail(
+        "{}: found simulation.street.photos, wanted none, because matches are measured with the "
+        "simulator's own textures",
+        config.file.string());
+  }
   auto world = make_configured_world(config);
   if (!world) return tl::unexpected(world.error());
   RecordedDrive recorded(config, rig, std::move(*world));

@@ -19,7 +19,9 @@ namespace bevloc::evaluation {
 /// - in every fourth frameset one with the acquiring range, near the border of that range or beyond
 ///   it, up to 2 ranges away.
 /// No tracker is involved: a recorded error belongs to a place and a prior. `drive` is the number
-/// that the places get. Fails if the model, the rig or the map cannot be used.
+/// that the places get. The pictures show the configuration's street, but no photographs and no
+/// faults. Fails for a street with photographs, and if the model, the rig or the map cannot be
+/// used.
 Result<std::vector<MeasuredPlace>> record_matches(const DriveConfig& config, const Rig& rig,
                                                   int drive,
                                                   const std::function<void(double)>& at_time_s);

@@ -95,19 +95,13 @@ void RunJudge::note_pose(const JudgedCycle& cycle) {
   if (is_beyond(pose.error, kFreewayAlertLimits)) {
     ++outcome_.beyond_alert;
   }
+  outcome_.protection.add(pose);
   for (int i = 0; i < 3; ++i) {
     const auto axis = static_cast<size_t>(i);
     const double error = std::abs(pose.error(i));
     for (size_t k = 0; k < outcome_.within_sigma.size(); ++k) {
       if (error <= static_cast<double>(k + 1) * pose.sigma(i)) ++outcome_.within_sigma[k][axis];
     }
-    const double level = pose.protection(i);
-    if (!std::isfinite(level)) continue;
-    ++outcome_.with_level[axis];
-    if (level < kFreewayAlertLimits(i)) ++outcome_.available[axis];
-    if (error <= level) continue;
-    ++outcome_.misleading[axis];
-    if (error > kFreewayAlertLimits(i)) ++outcome_.hazardous[axis];
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "evaluation/campaign/cycle_reader.h"
 #include "evaluation/campaign/modes/fault_time.h"
+#include "evaluation/campaign/protection_counts.h"
 
 namespace bevloc::evaluation {
 
@@ -22,9 +23,6 @@ struct TimelineEntry {
   WhyMask why;
 };
 
-/// Numbers of valid poses, per axis: longitudinal, lateral, yaw.
-using PoseCounts = std::array<uint64_t, 3>;
-
 struct RunOutcome {
   /// Since the first valid pose. Cycles of a silent appliance count, too.
   uint64_t cycles = 0;
@@ -32,10 +30,7 @@ struct RunOutcome {
   uint64_t beyond_alert = 0;                        ///< valid poses beyond an alert limit
   Eigen::Vector3d worst = Eigen::Vector3d::Zero();  ///< largest absolute errors of valid poses
   std::array<PoseCounts, 3> within_sigma{};         ///< [k]: errors within k + 1 sigmas
-  PoseCounts with_level{};                          ///< poses with a protection level
-  PoseCounts misleading{};                          ///< of those: beyond the protection level
-  PoseCounts hazardous{};                           ///< of those: beyond the alert limit too
-  PoseCounts available{};             ///< poses with a protection level under the alert limit
+  ProtectionCounts protection;
   int false_lost = 0;                 ///< how often a valid pose was lost before the fault
   int lost = 0;                       ///< how often in all
   double first_fix_s = -1.0;          ///< the first valid pose; negative if there was none

@@ -30,20 +30,22 @@ double share(uint64_t part, uint64_t all) {
 
 nlohmann::json json_of_axis(const StanfordDiagram& diagram, int axis) {
   const StanfordDiagram::Axis& counted = diagram.axis(axis);
+  const ProtectionCounts& protection = diagram.protection();
+  const auto at = static_cast<size_t>(axis);
   const double limit = in_unit(axis, kFreewayAlertLimits(axis));
   nlohmann::json object;
-  object["axis"] = kAxisNames[static_cast<size_t>(axis)];
-  object["unit"] = kAxisUnits[static_cast<size_t>(axis)];
+  object["axis"] = kAxisNames[at];
+  object["unit"] = kAxisUnits[at];
   object["alert_limit"] = limit;
   object["bin"] = limit / StanfordDiagram::kBinsPerLimit;
   object["bins"] = StanfordDiagram::kBins;
   object["counts"] = counted.counts;
-  object["with_protection_level"] = counted.with_level;
-  object["misleading"] = counted.misleading;
-  object["misleading_share"] = share(counted.misleading, counted.with_level);
-  object["hazardous"] = counted.hazardous;
-  object["hazardous_share"] = share(counted.hazardous, counted.with_level);
-  object["available_share"] = share(counted.available, diagram.cycles());
+  object["with_protection_level"] = protection.with_level[at];
+  object["misleading"] = protection.misleading[at];
+  object["misleading_share"] = share(protection.misleading[at], protection.with_level[at]);
+  object["hazardous"] = protection.hazardous[at];
+  object["hazardous_share"] = share(protection.hazardous[at], protection.with_level[at]);
+  object["available_share"] = share(protection.available[at], diagram.cycles());
   object["worst_excess"] = in_unit(axis, counted.worst_excess);
   return object;
 }
@@ -70,18 +72,14 @@ void StanfordDiagram::add(const JudgedCycle& cycle) {
 
 void StanfordDiagram::count(const JudgedError& pose) {
   ++valid_;
+  protection_.add(pose);
   for (int i = 0; i < 3; ++i) {
     const double error = std::abs(pose.error(i));
     const double level = pose.protection(i);
     if (!std::isfinite(level)) continue;
     const double limit = kFreewayAlertLimits(i);
     Axis& axis = axes_[static_cast<size_t>(i)];
-    ++axis.with_level;
     ++axis.counts[static_cast<size_t>(bin_of(level, limit) * kBins + bin_of(error, limit))];
-    if (level < limit) ++axis.available;
-    if (error <= level) continue;
-    ++axis.misleading;
-    if (error > limit) ++axis.hazardous;
     axis.worst_excess = std::max(axis.worst_excess, error - level);
   }
 }
@@ -91,13 +89,15 @@ std::string to_table(const std::vector<NamedDiagram>& diagrams) {
       "| drives | axis | valid poses | misleading | hazardous | protection level under the alert "
       "limit |\n|---|---|---:|---:|---:|---:|\n";
   for (const NamedDiagram& named : diagrams) {
-    for (int i = 0; i < 3; ++i) {
-      const StanfordDiagram::Axis& axis = named.diagram.axis(i);
+    const ProtectionCounts& protection = named.diagram.protection();
+    for (size_t i = 0; i < kAxisNames.size(); ++i) {
+      const uint64_t misleading = protection.misleading[i];
+      const uint64_t hazardous = protection.hazardous[i];
+      const uint64_t with_level = protection.with_level[i];
       text += fmt::format("| {} | {} | {} | {} ({:.1e}) | {} ({:.1e}) | {:.1f} % |\n", named.name,
-                          kAxisNames[static_cast<size_t>(i)], named.diagram.valid(),
-                          axis.misleading, share(axis.misleading, axis.with_level), axis.hazardous,
-                          share(axis.hazardous, axis.with_level),
-                          100.0 * share(axis.available, named.diagram.cycles()));
+                          kAxisNames[i], named.diagram.valid(), misleading,
+                          share(misleading, with_level), hazardous, share(hazardous, with_level),
+                          100.0 * share(protection.available[i], named.diagram.cycles()));
     }
   }
   text += '\n';

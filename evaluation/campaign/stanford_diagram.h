@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/campaign/cycle_reader.h"
+#include "evaluation/campaign/protection_counts.h"
 
 namespace bevloc::evaluation {
 
@@ -21,10 +22,6 @@ class StanfordDiagram {
 
   struct Axis {
     std::array<uint64_t, kBins * kBins> counts{};  ///< [protection level, error]
-    uint64_t with_level = 0;                       ///< poses with a protection level
-    uint64_t misleading = 0;                       ///< beyond the protection level
-    uint64_t hazardous = 0;                        ///< and beyond the alert limit
-    uint64_t available = 0;                        ///< protection level under the alert limit
     double worst_excess = 0.0;  ///< largest error beyond the protection level, m or rad
   };
 
@@ -38,6 +35,7 @@ class StanfordDiagram {
   /// Since the first valid pose of each drive. Cycles of a silent appliance count, too.
   uint64_t cycles() const { return cycles_; }
   uint64_t valid() const { return valid_; }
+  const ProtectionCounts& protection() const { return protection_; }
   const Axis& axis(int i) const { return axes_[static_cast<size_t>(i)]; }
 
  private:
@@ -49,6 +47,7 @@ class StanfordDiagram {
   std::optional<double> latest_s_;
   uint64_t cycles_ = 0;
   uint64_t valid_ = 0;
+  ProtectionCounts protection_;
   std::array<Axis, 3> axes_;  ///< longitudinal, lateral, yaw
 };
 

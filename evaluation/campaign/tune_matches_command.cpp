@@ -8,8 +8,10 @@
 
 #include "common/option_checks.h"
 #include "common/output_file.h"
-#include "common/shipped_file.h"
+#include "evaluation/campaign/campaign.h"
 #include "evaluation/campaign/match_recorder.h"
+#include "evaluation/drivable_map.h"
+#include "evaluation/files_of_config.h"
 #include "evaluation/map_turns.h"
 #include "evaluation/progress_bar.h"
 #include "evaluation/town_seeds.h"
@@ -42,25 +44,21 @@ Status TuneMatchesCommand::run() const {
   if (Status towns = check_town_seeds("--first-seed", first_seed_, drives_); !towns) return towns;
   if (Status driven = check_map_turns(maps_, "--drives", drives_); !driven) return driven;
   spdlog::set_level(spdlog::level::warn);
-  auto config = load_drive_config(given_or_shipped(config_));
+  if (Status drivable = check_drivable(maps_); !drivable) return drivable;
+  auto config = load_faultless_config(config_, "matches are measured without faults");
   if (!config) return tl::unexpected(config.error());
-  if (!config->simulation) {
-    return fail("{}: found cameras that are not mock, wanted mock ones", config_);
-  }
+  std::vector<std::filesystem::path> inputs = files_of(*config);
+  inputs.insert(inputs.end(), maps_.begin(), maps_.end());
+  if (Status other = check_output(csv_file_, inputs); !other) return other;
   const auto rig = read_rig(config->rig_file);
   if (!rig) return tl::unexpected(rig.error());
   config->simulation->duration_s = duration_s_;
   MatchTable table;
   const auto seconds = static_cast<int>(duration_s_);
   for (int drive = 0; drive < drives_; ++drive) {
-    config->simulation->seed = first_seed_ + static_cast<uint64_t>(drive);
-    config->simulation->town_seed = config->simulation->seed;
-    const std::string map = map_of_drive(maps_, drive);
-    if (!map.empty()) {
-      config->simulation->town_seed.reset();
-      config->map_file = map;
-    }
-    auto places = record_matches(*config, *rig, drive, [&](double time_s) {
+    const DriveConfig driven = config_of_drive(*config, first_seed_ + static_cast<uint64_t>(drive),
+                                               map_of_drive(maps_, drive));
+    auto places = record_matches(driven, *rig, drive, [&](double time_s) {
       show_progress(drive * seconds + static_cast<int>(time_s) + 1, drives_ * seconds,
                     "seconds of driving");
     });

@@ -7,6 +7,7 @@
 #include "common/option_checks.h"
 #include "common/output_file.h"
 #include "common/shipped_file.h"
+#include "evaluation/check_outputs.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/drive/sheet.h"
 #include "evaluation/localize/localize_report.h"
@@ -86,7 +87,8 @@ PriorScores score_priors(PictureLocalizer& localizer, const Se2& truth, int prio
                          within(range.yaw_rad.range)};
     const Localization localization = localizer.localize(truth * correction.inverse());
     scores.priors.push_back(judge(Se2{}, correction));
-    scores.matches.push_back(judge_pose(localizer.solution(), range, correction));
+    scores.matches.push_back(judge(localizer.solution(), range, correction));
+    scores.matches.back().sigma = sigma_of(localization);
     scores.without_evidence += localization.match.evidence == Evidence::kNone;
     show_progress(i + 1, priors, "priors");
   }
@@ -190,6 +192,10 @@ Status LocalizeCommand::run() const {
   if (!prior) return tl::unexpected(prior.error());
   auto pictures = read_pictures(image_folder_, *rig);
   if (!pictures) return tl::unexpected(pictures.error());
+  const std::string model = given_or_shipped(model_);
+  std::vector<std::filesystem::path> inputs = pictures->files;
+  inputs.insert(inputs.end(), {rig_file_, map_file_, motion_file_, model});
+  if (Status others = check_outputs({json_file_, sheet_file_}, inputs); !others) return others;
   print_strays(*pictures);
   if (!motion_file_.empty()) {
     const auto motions = read_motions(motion_file_);
@@ -200,7 +206,7 @@ Status LocalizeCommand::run() const {
   LocalizerOptions options;
   options.solver = solver_;
   options.online_calibration.enabled = false;
-  auto localizer = Localizer::create(*rig, index, given_or_shipped(model_), options);
+  auto localizer = Localizer::create(*rig, index, model, options);
   if (!localizer) return tl::unexpected(localizer.error());
 
   const SearchRange range = wide_ ? SearchRange::kAcquiring : SearchRange::kTracking;

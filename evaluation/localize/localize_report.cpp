@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "drivers/frameset/synchronizer.h"
 #include "evaluation/summary_format.h"
 #include "pipeline/tracker/measurements.h"
 
@@ -47,21 +48,26 @@ nlohmann::json json_of(const PerceptionScore& perception) {
   return json;
 }
 
+/// bevlocd drops a frameset with fewer cameras.
+constexpr int kFewestCameras = drivers::SynchronizerConfig().min_cameras;
+
 constexpr std::array<const char*, 3> kAxes = {"along", "across", "yaw"};
 constexpr std::array<const char*, 3> kUnits = {"m", "m", "degrees"};
-
-/// The sigma of the pose; kNotGiven on an axis at the border of the search.
-PerAxis sigma_of(const Localization& localization) {
-  PerAxis sigma = in_units(pose_sigma(localization.match));
-  for (int axis = 0; axis < 3; ++axis) {
-    if (localization.seen.at_border(axis)) sigma[static_cast<size_t>(axis)] = kNotGiven;
-  }
-  return sigma;
-}
 
 template <typename Vector>
 std::array<typename Vector::Scalar, 3> listed(const Vector& values) {
   return {values(0), values(1), values(2)};
+}
+
+/// The number of outcomes without a sigma, per axis.
+std::array<int, 3> without_sigma(const std::vector<Outcome>& outcomes) {
+  std::array<int, 3> count{};
+  for (const Outcome& outcome : outcomes) {
+    for (size_t axis = 0; axis < count.size(); ++axis) {
+      count[axis] += std::isnan(outcome.sigma[axis]) ? 1 : 0;
+    }
+  }
+  return count;
 }
 
 std::string border_lines_of(const Localization& localization) {
@@ -79,7 +85,10 @@ std::string border_lines_of(const Localization& localization) {
 std::string trust_line_of(const Localization& localization) {
   if (localization.is_trusted()) return "trusted: yes\n";
   const Seen& seen = localization.seen;
-  std::vector<std::string_view> reasons;
+  std::vector<std::string> reasons;
+  if (!localization.has_enough_cameras()) {
+    reasons.push_back(fmt::format("fewer than {} cameras were used", kFewestCameras));
+  }
   if (!seen.place) reasons.emplace_back("the score is too low");
   if (seen.at_border.any()) reasons.emplace_back("the best place is at the border");
   if (!seen.across && !seen.at_border.y()) {
@@ -93,6 +102,19 @@ std::string trust_line_of(const Localization& localization) {
 }
 
 }  // namespace
+
+bool Localization::has_enough_cameras() const {
+  return static_cast<int>(cameras.count()) >= kFewestCameras;
+}
+
+PerAxis sigma_of(const Localization& localization) {
+  if (localization.match.evidence == Evidence::kNone) return {kNotGiven, kNotGiven, kNotGiven};
+  PerAxis sigma = in_units(pose_sigma(localization.match));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (localization.seen.at_border(axis)) sigma[static_cast<size_t>(axis)] = kNotGiven;
+  }
+  return sigma;
+}
 
 Seen judge_single(MatchResult& match) {
   const Seen seen = EvidenceMonitor::judge_alone(match);
@@ -163,14 +185,17 @@ PerAxis bias_of(const std::vector<Outcome>& outcomes) {
 std::string text_of(const PriorScores& scores) {
   const Summary prior = summarise(scores.priors);
   const Summary match = summarise(scores.matches);
+  const auto missing = without_sigma(scores.matches);
   return fmt::format(
       "{} priors, {} without evidence; along, across (m), yaw (degrees)\n"
       "prior, mean absolute error      {}\n"
       "bevloc, mean absolute error     {}\n"
       "bevloc, mean error (bias)       {}\n"
-      "bevloc, errors within 3 sigma, % {}\n{}",
+      "bevloc, errors within 3 sigma, % {}\n"
+      "bevloc, answers without a sigma {:>4} {:>3} {:>3}\n{}",
       scores.priors.size(), scores.without_evidence, three(prior.mae), three(match.mae),
-      three(bias_of(scores.matches)), percent(match.coverage_3s), lines_of(scores.perception));
+      three(bias_of(scores.matches)), percent(match.coverage_3s), missing[0], missing[1],
+      missing[2], lines_of(scores.perception));
 }
 
 nlohmann::json json_of(const PriorScores& scores) {
@@ -179,6 +204,7 @@ nlohmann::json json_of(const PriorScores& scores) {
           {"prior", json_of(summarise(scores.priors))},
           {"bevloc", json_of(summarise(scores.matches))},
           {"bias", bias_of(scores.matches)},
+          {"without_sigma", without_sigma(scores.matches)},
           {"perception", json_of(scores.perception)}};
 }
 

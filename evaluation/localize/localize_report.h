@@ -26,10 +26,19 @@ struct Localization {
   PerceptionScore perception{};
 
   Se2 pose() const { return prior * match.correction; }
+  /// Whether bevlocd matches framesets with so many cameras, with its default
+  /// `cameras.min_cameras`.
+  bool has_enough_cameras() const;
   /// Whether bevlocd would take a new pose from matches like this one, and no axis is at the border
   /// of the search.
-  bool is_trusted() const { return seen.confirms_start() && !seen.at_border.any(); }
+  bool is_trusted() const {
+    return has_enough_cameras() && seen.confirms_start() && !seen.at_border.any();
+  }
 };
+
+/// The sigma of the pose. An axis at the border of the search has none (kNotGiven), and no axis has
+/// one without evidence.
+PerAxis sigma_of(const Localization& localization);
 
 /// Judges a match as bevlocd judges one that has none before it. The sigma of an axis with a low
 /// score grows, and an axis at the border of the search loses its evidence.
@@ -37,8 +46,8 @@ Seen judge_single(MatchResult& match);
 
 /// Localizations from many priors around a known pose.
 struct PriorScores {
-  std::vector<Outcome> priors;  ///< errors of the priors themselves
-  std::vector<Outcome> matches;
+  std::vector<Outcome> priors;   ///< errors of the priors themselves
+  std::vector<Outcome> matches;  ///< their sigmas are those of sigma_of()
   int without_evidence = 0;
   PerceptionScore perception{};  ///< against the map at the known pose
 };

@@ -80,6 +80,7 @@ Result<PictureSet> read_pictures(const std::filesystem::path& folder, const Rig&
     if (Status read = read_camera_picture((*file)->string(), set.pictures[i]); !read) {
       return tl::unexpected(read.error());
     }
+    set.files.push_back(**file);
     set.present.set(i);
   }
   if (set.present.none()) {

@@ -17,6 +17,7 @@ struct PictureSet {
   std::array<RgbImage, kCameraCount> pictures;
   CameraMask present;
   CameraMotions reference_from_exposure{};
+  std::vector<std::filesystem::path> files;   ///< that were read
   std::vector<std::filesystem::path> strays;  ///< pictures of the folder that are of no camera
 
   /// The borrowed pictures. The set must outlive the result.

@@ -15,6 +15,7 @@
 #include "common/option_checks.h"
 #include "common/output_file.h"
 #include "common/replace_file.h"
+#include "evaluation/check_outputs.h"
 #include "evaluation/maps/map_diff.h"
 #include "evaluation/maps/map_facts.h"
 #include "evaluation/maps/map_picture.h"
@@ -120,10 +121,8 @@ void MapCommand::declare(CLI::App& app) {
 }
 
 Status MapCommand::run() const {
-  for (const std::string& out : {out_, json_, picture_}) {
-    if (Status status = check_output(out, {in_, other_, classes_}); !status) return status;
-  }
-  return (this->*action_)();
+  const Status others = check_outputs({out_, json_, picture_}, {in_, other_, classes_});
+  return others ? (this->*action_)() : others;
 }
 
 Status MapCommand::check_picture() const {

@@ -8,22 +8,17 @@
 #include "common/option_checks.h"
 #include "common/output_file.h"
 #include "common/shipped_file.h"
+#include "evaluation/check_outputs.h"
 #include "evaluation/choice_option.h"
+#include "evaluation/drivable_map.h"
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/network/network_report.h"
 #include "evaluation/progress_bar.h"
-#include "pipeline/map/map_loader.h"
 
 namespace bevloc::evaluation {
 namespace {
 
 constexpr const char* kAllSets = "all";
-
-Result<HdMap> load_drivable_map(const std::string& file) {
-  auto map = load_map(file);
-  if (map && map->lanes.empty()) return fail("{}: found no lanes, wanted some to drive on", file);
-  return map;
-}
 
 }  // namespace
 
@@ -73,6 +68,10 @@ Result<std::vector<sim::NuisanceSet>> NetworkCommand::sets() const {
 }
 
 Status NetworkCommand::run() const {
+  const std::string model = given_or_shipped(model_);
+  if (Status others = check_outputs({json_file_, csv_file_}, {map_file_, model}); !others) {
+    return others;
+  }
   const auto chosen_sets = sets();
   if (!chosen_sets) return tl::unexpected(chosen_sets.error());
   std::optional<HdMap> map;
@@ -81,7 +80,7 @@ Status NetworkCommand::run() const {
     if (!loaded) return tl::unexpected(loaded.error());
     map = std::move(*loaded);
   }
-  auto evaluation = NetworkEvaluation::create(given_or_shipped(model_), rows_);
+  auto evaluation = NetworkEvaluation::create(model, rows_);
   if (!evaluation) return tl::unexpected(evaluation.error());
 
   const NetworkEvaluationSubject subject{evaluation->model_name(), map_file_, frames_, seed_};

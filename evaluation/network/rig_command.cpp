@@ -10,6 +10,7 @@
 #include "common/option_checks.h"
 #include "common/output_file.h"
 #include "common/shipped_file.h"
+#include "evaluation/check_outputs.h"
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/progress_bar.h"
 #include "evaluation/summary_format.h"
@@ -77,9 +78,13 @@ Result<RigCommand::NamedRig> RigCommand::chosen_rig() const {
 }
 
 Status RigCommand::run() const {
+  const std::string model = given_or_shipped(model_);
+  if (Status others = check_outputs({json_file_, drawn_file_}, {rig_file_, model}); !others) {
+    return others;
+  }
   const auto rig = chosen_rig();
   if (!rig) return tl::unexpected(rig.error());
-  auto evaluation = NetworkEvaluation::create(given_or_shipped(model_));
+  auto evaluation = NetworkEvaluation::create(model);
   if (!evaluation) return tl::unexpected(evaluation.error());
   if (const Status fits = check_rig_fits(evaluation->model_rig(), rig->rig); !fits) {
     fmt::print(stderr, "{}: bevlocd refuses it: {}\n", rig->name, fits.error().message);

@@ -30,10 +30,18 @@ PerAxis error_of(const Se2& estimate, const Se2& truth) {
       Se2{estimate.x_m - truth.x_m, estimate.y_m - truth.y_m, estimate.yaw_rad - truth.yaw_rad});
 }
 
-/// 1 if the error is at most `limit`, else 0; kNotGiven if `limit` is.
-double is_within(double error, double limit) {
-  if (std::isnan(limit)) return kNotGiven;
-  return error <= limit ? 1.0 : 0.0;
+/// The share of the errors of an axis that are at most `sigmas` reported sigmas. Outcomes without a
+/// sigma do not count. kNotGiven if none has one.
+double coverage_of(const std::vector<Outcome>& outcomes, size_t axis, double sigmas) {
+  size_t with_sigma = 0;
+  size_t within = 0;
+  for (const Outcome& outcome : outcomes) {
+    if (std::isnan(outcome.sigma[axis])) continue;
+    ++with_sigma;
+    if (std::abs(outcome.error[axis]) <= sigmas * outcome.sigma[axis]) ++within;
+  }
+  if (with_sigma == 0) return kNotGiven;
+  return static_cast<double>(within) / static_cast<double>(with_sigma);
 }
 
 Summary nothing_given() {
@@ -100,9 +108,9 @@ Summary summarise(const std::vector<Outcome>& outcomes) {
       summary.mae[axis] += share * error;
       summary.parabola_mae[axis] += share * std::abs(outcome.parabola_error[axis]);
       summary.nll[axis] += share * outcome.nll[axis];
-      summary.coverage_1s[axis] += share * is_within(error, outcome.sigma[axis]);
-      summary.coverage_3s[axis] += share * is_within(error, 3.0 * outcome.sigma[axis]);
     }
+    summary.coverage_1s[axis] = coverage_of(outcomes, axis, 1.0);
+    summary.coverage_3s[axis] = coverage_of(outcomes, axis, 3.0);
     summary.rmse[axis] = std::sqrt(square);
     summary.median[axis] = quantile_of(values, 0.5);
     summary.p95[axis] = quantile_of(values, 0.95);

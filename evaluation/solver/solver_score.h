@@ -38,7 +38,8 @@ Outcome judge_pose(const SolverResult& result, const HypothesisGrid& hypotheses,
 /// The outcome of a method that reports a correction only.
 Outcome judge(const Se2& correction, const Se2& truth);
 
-/// A measure is kNotGiven if it is kNotGiven in any outcome, or if there is no outcome.
+/// A measure is kNotGiven if it is kNotGiven in any outcome, or if there is no outcome. The
+/// coverages leave out the outcomes whose sigma is kNotGiven.
 struct Summary {
   size_t scenes = 0;
   PerAxis mae{};
@@ -47,7 +48,7 @@ struct Summary {
   PerAxis p95{};
   PerAxis parabola_mae{};
   PerAxis nll{};
-  PerAxis coverage_1s{};  ///< share of errors within the reported sigma
+  PerAxis coverage_1s{};  ///< share of the errors that are within the reported sigma
   PerAxis coverage_3s{};
   double time_ms = 0.0;  ///< median
 };

@@ -200,16 +200,25 @@ TEST(ConfigurationText, KeepsStrangeNames) {
   EXPECT_EQ(config.rig_file, "/x/rig.yaml");
 }
 
+Answers plain_answers() {
+  return {.driver = kV4l2Cameras,
+          .ids = {"a", "b", "c", "d", "e", "f"},
+          .rig = "rig.yaml",
+          .map = "town.osm",
+          .model = "model.onnx",
+          .can = "can0"};
+}
+
 TEST(ConfigurationText, SaysWhichIdsBelongToAPlug) {
-  const Answers answers{.driver = kV4l2Cameras,
-                        .ids = {"a", "b", "c", "d", "e", "f"},
-                        .rig = "rig.yaml",
-                        .map = "town.osm",
-                        .model = "model.onnx",
-                        .can = "can0"};
-  const std::string text = configuration_text(answers, ".");
+  const std::string text = configuration_text(plain_answers(), ".");
   EXPECT_THAT(text, HasSubstr("An id with a serial number stays with its camera"));
   EXPECT_THAT(text, HasSubstr("belongs to the plug"));
+}
+
+/// A list of formats in this comment would lack those that come later.
+TEST(ConfigurationText, NamesThePageOfTheMapFormats) {
+  const std::string text = configuration_text(plain_answers(), ".");
+  EXPECT_THAT(text, HasSubstr("The HD map, in any format of docs/maps.md."));
 }
 
 }  // namespace

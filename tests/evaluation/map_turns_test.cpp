@@ -39,5 +39,17 @@ TEST(MapTurns, CommandsRefuseAMapThatNoDriveUses) {
               HasSubstr("--map: found 1 of them with --drives 1"));
 }
 
+TEST(MapTurns, CommandsRefuseAMapThatCannotBeReadBeforeTheFirstDrive) {
+  // Without a configuration there is no drive.
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(test::refusal_of<IntegrityCommand>({"integrity", "--drives", "2", "--map",
+                                                  "/no/such.osm", "--config", "/no/such.yaml"}),
+              HasSubstr("/no/such.osm"));
+  EXPECT_THAT(test::refusal_of<TuneMatchesCommand>({"matches", "--drives", "2", "--map",
+                                                    "/no/such.osm", "--config", "/no/such.yaml",
+                                                    "--csv", folder / "matches.csv"}),
+              HasSubstr("/no/such.osm"));
+}
+
 }  // namespace
 }  // namespace bevloc::evaluation

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import contextlib
 import io
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -14,7 +16,9 @@ from unittest import mock
 
 import yaml
 
+from tests.house.test_documents import ROOT
 from tests.support.script_module import load_script
+from tests.support.stub_programs import StubPrograms
 
 
 class EvaluateTest(unittest.TestCase):
@@ -95,6 +99,21 @@ class EvaluateTest(unittest.TestCase):
             stated = yaml.safe_load(used.read_text())
         self.assertEqual(stated["calibration"]["rig"], str(Path("x.yaml").resolve()))
         self.assertEqual(stated["model"], {"file": "c"})
+
+
+class FreshMachine(unittest.TestCase):
+    def test_installs_what_it_imports_before_it_imports_it(self) -> None:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name) / "script"
+            stubs = StubPrograms(folder)
+            stubs.put("bootstrap")
+            shutil.copy(ROOT / "script/evaluate", folder)
+            # Without -S, Python would find the packages of this machine.
+            command = ["/usr/bin/python3", "-S", str(folder / "evaluate"), "--help"]
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            calls = stubs.take_calls()
+        self.assertIn("No module named 'yaml'", done.stderr)
+        self.assertEqual(calls, ["bootstrap python"])
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
+#include "tests/evaluation/own_config.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::bench {
@@ -91,6 +92,17 @@ TEST_F(BenchCommandTest, ErrorsNameTheFile) {
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error().message, HasSubstr("none.yaml"));
   EXPECT_THROW(run({"--stage", "can", "--json", file("none/a.json")}), CLI::ValidationError);
+}
+
+TEST_F(BenchCommandTest, WritesOverNoFileThatItReads) {
+  const std::string config = test::write_own_config(folder_.path());
+  for (const char* input : {"own.yaml", "rig.yaml"}) {
+    const std::string before = test::read_text(file(input));
+    const Status refused = run({"--stage", "can", "--frames", "1", "--json", file(input)}, config);
+    ASSERT_FALSE(refused) << input;
+    EXPECT_THAT(refused.error().message, HasSubstr("found a file to write that is also read"));
+    EXPECT_EQ(test::read_text(file(input)), before);
+  }
 }
 
 TEST_F(BenchCommandTest, TheProgramExitsWithTwo) {

@@ -5,7 +5,11 @@
 
 #include <gmock/gmock.h>
 
+#include "pipeline/calibration/rig_yaml.h"
+#include "sim/sim_rig.h"
+#include "tests/evaluation/calib/picture_folder.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/text.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -35,6 +39,27 @@ TEST(CalibCommand, AFileMayFollowAnOptionWithAList) {
   EXPECT_THAT(error_of({"refine", "--rig", gone, "--map", gone, "--keep", "focal", "--keep", "time",
                         "pictures"}),
               HasSubstr("gone.yaml"));
+}
+
+TEST(CalibCommand, WritesOverNoFileThatItReads) {
+  const test::TemporaryFolder folder;
+  test::write_picture_folder(folder.path(), 10);
+  ASSERT_TRUE(write_file(folder / "rig.yaml", format_rig(sim::nominal_rig())));
+  ASSERT_TRUE(
+      write_file(folder / "town.osm",
+                 test::read_text(BEVLOC_SOURCE_DIR "/tests/pipeline/map/fixtures/street.osm")));
+  for (const char* command : {"check", "refine"}) {
+    for (const char* input :
+         {"rig.yaml", "town.osm", "reference.csv", "front/frames.txt", "back/picture.png"}) {
+      for (const char* option : {"--json", "--picture"}) {
+        const std::string before = test::read_text(folder / input);
+        EXPECT_THAT(error_of({command, folder.path(), "--rig", folder / "rig.yaml", "--map",
+                              folder / "town.osm", option, folder / input}),
+                    HasSubstr(std::string(input) + ": found a file to write that is also read"));
+        EXPECT_EQ(test::read_text(folder / input), before);
+      }
+    }
+  }
 }
 
 }  // namespace

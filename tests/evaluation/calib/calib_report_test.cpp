@@ -40,6 +40,20 @@ TEST(CalibReport, SaysWhichParametersWereKept) {
   EXPECT_THAT(text_of(check_of(refinement)), Not(HasSubstr("kept")));
 }
 
+TEST(CalibReport, SaysATimeOffsetThatWasFound) {
+  RigRefinement refinement = clear_refinement();
+  EXPECT_EQ(time_offsets_of(refinement), "") << "0 ms with a sigma of 1 ms";
+  refinement.cameras[1].change[kTimeOffset] = -0.02;
+  EXPECT_THAT(time_offsets_of(refinement),
+              testing::StartsWith("front: pictures are taken 20.0 ms earlier than"));
+  for (CameraRefinement& camera : refinement.cameras) {
+    camera.change[kTimeOffset] = camera.sigma[kTimeOffset] = 0.0;
+  }
+  for (size_t c = 0; c < 3; ++c) refinement.cameras[c].kept.set(kTimeOffset);
+  for (size_t c = 3; c < kCameraCount; ++c) refinement.cameras[c].unobservable.set(kTimeOffset);
+  EXPECT_EQ(time_offsets_of(refinement), "") << "none was looked for or found";
+}
+
 TEST(CalibReport, ACameraWhoseRotationIsNotObservableIsNotGood) {
   RigRefinement checked = clear_refinement();
   EXPECT_TRUE(all_good(check_of(checked)));

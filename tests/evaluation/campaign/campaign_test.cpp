@@ -10,8 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/files.h"
 #include "tests/evaluation/campaign/run_mode.h"
+#include "tests/evaluation/own_config.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
@@ -72,26 +72,16 @@ TEST(ModeTableTest, HasDistinctNamesAndEnoughModes) {
   EXPECT_GE(names.size(), 30);
 }
 
-/// A campaign with a copy of the demo's configuration: with this text in place of its seed of the
-/// town, and with more keys at the end of the other sections.
-Result<Campaign> campaign_with(const std::string& map, const std::string& simulation,
-                               const std::string& calibration = "") {
-  const std::filesystem::path own = std::filesystem::path(BEVLOC_SOURCE_DIR) / "config";
-  std::string text = read_file(own / "demo.yaml").value();
-  const auto replace = [&text](const std::string& from, const std::string& to) {
-    text.replace(text.find(from), from.size(), to);
-  };
-  replace("procedural_seed: 7", map);
-  replace("rig: rig_demo.yaml\n", "rig: " + own.string() + "/rig_demo.yaml\n" + calibration);
-  replace("file: ../models", "file: " + own.string() + "/../models");
+/// A campaign with a configuration that has these keys.
+Result<Campaign> campaign_with(const test::OwnKeys& keys) {
   const test::TemporaryFolder folder;
-  EXPECT_TRUE(write_file(folder / "own.yaml", text + simulation));
-  return Campaign::create((folder / "own.yaml").string(),
+  return Campaign::create(test::write_own_config(folder.path(), keys),
                           BEVLOC_SOURCE_DIR "/evaluation/campaign/matches.csv", short_drives());
 }
 
 TEST(CampaignTest, DrivesThroughTheMapOfItsConfiguration) {
-  const auto campaign = campaign_with("file: /no/such.osm", "");
+  const auto campaign =
+      campaign_with({.map = "file: /no/such.osm", .calibration = "", .simulation = ""});
   ASSERT_TRUE(campaign) << campaign.error().message;
   const auto modes = modes_named({"none"}, Level::kStage);
   const Status driven = campaign->run(*modes, [](const CampaignRow&) {});
@@ -100,14 +90,17 @@ TEST(CampaignTest, DrivesThroughTheMapOfItsConfiguration) {
 }
 
 TEST(CampaignTest, RefusesFaultsOfItsConfiguration) {
-  const auto campaign = campaign_with("procedural_seed: 7", "  faults: [{kind: gnss_outage}]\n");
+  const auto campaign = campaign_with({.map = "procedural_seed: 7",
+                                       .calibration = "",
+                                       .simulation = "  faults: [{kind: gnss_outage}]\n"});
   ASSERT_FALSE(campaign);
   EXPECT_THAT(campaign.error().message, testing::HasSubstr("found simulation.faults"));
 }
 
 TEST(CampaignTest, NoDriveKnowsWhatAnotherOneLearned) {
-  const auto campaign =
-      campaign_with("procedural_seed: 7", "", "  online: {file: /no/learned.yaml}\n");
+  const auto campaign = campaign_with({.map = "procedural_seed: 7",
+                                       .calibration = "  online: {file: /no/learned.yaml}\n",
+                                       .simulation = ""});
   ASSERT_TRUE(campaign) << campaign.error().message;
   EXPECT_EQ(campaign->config().learned_calibration_file, "");
 }
@@ -140,16 +133,16 @@ TEST(CampaignTest, BoundsTheErrorsOfADriveWithoutAFault) {
   const RunOutcome outcome = run_mode("none");
   ASSERT_GT(outcome.valid, 0);
   const PoseCounts all{outcome.valid, outcome.valid, outcome.valid};
-  EXPECT_EQ(outcome.with_level, all);
-  EXPECT_EQ(outcome.misleading, PoseCounts{});
-  EXPECT_EQ(outcome.hazardous, PoseCounts{});
+  EXPECT_EQ(outcome.protection.with_level, all);
+  EXPECT_EQ(outcome.protection.misleading, PoseCounts{});
+  EXPECT_EQ(outcome.protection.hazardous, PoseCounts{});
   for (size_t axis = 0; axis < 3; ++axis) {
     const auto share_of = [&](const PoseCounts& poses) {
       return static_cast<double>(poses[axis]) / static_cast<double>(outcome.valid);
     };
     EXPECT_GT(share_of(outcome.within_sigma[0]), 0.6) << "axis " << axis;
     EXPECT_GT(share_of(outcome.within_sigma[2]), 0.99) << "axis " << axis;
-    EXPECT_GT(share_of(outcome.available), 0.95) << "axis " << axis;
+    EXPECT_GT(share_of(outcome.protection.available), 0.95) << "axis " << axis;
   }
 }
 

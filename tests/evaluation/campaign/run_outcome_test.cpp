@@ -177,9 +177,9 @@ TEST(RunJudgeTest, SeparatesMisleadingFromHazardousPoses) {
   judge.add(valid_cycle(0.1, {0.0, 0.3, 0.0}));  // beyond it: misleading
   judge.add(valid_cycle(0.2, {0.0, 0.6, 0.0}));  // and beyond the alert limit: hazardous
   const RunOutcome outcome = judge.outcome();
-  EXPECT_EQ(outcome.misleading, (PoseCounts{0, 2, 0}));
-  EXPECT_EQ(outcome.hazardous, (PoseCounts{0, 1, 0}));
-  EXPECT_EQ(outcome.available, (PoseCounts{3, 3, 3}));
+  EXPECT_EQ(outcome.protection.misleading, (PoseCounts{0, 2, 0}));
+  EXPECT_EQ(outcome.protection.hazardous, (PoseCounts{0, 1, 0}));
+  EXPECT_EQ(outcome.protection.available, (PoseCounts{3, 3, 3}));
   EXPECT_EQ(outcome.within_sigma[0], (PoseCounts{3, 0, 3}));
   EXPECT_EQ(outcome.within_sigma[2], (PoseCounts{3, 0, 3}));
 }
@@ -191,9 +191,9 @@ TEST(RunJudgeTest, DoesNotCountAPoseWithoutAProtectionLevelAsAvailable) {
   judge.add(cycle);
   const RunOutcome outcome = judge.outcome();
   EXPECT_EQ(outcome.valid, 1);
-  EXPECT_EQ(outcome.with_level, (PoseCounts{0, 0, 0}));
-  EXPECT_EQ(outcome.available, (PoseCounts{0, 0, 0}));
-  EXPECT_EQ(outcome.misleading, (PoseCounts{0, 0, 0}));
+  EXPECT_EQ(outcome.protection.with_level, (PoseCounts{0, 0, 0}));
+  EXPECT_EQ(outcome.protection.available, (PoseCounts{0, 0, 0}));
+  EXPECT_EQ(outcome.protection.misleading, (PoseCounts{0, 0, 0}));
 }
 
 TEST(NamesOfTest, AreThoseOfTheBus) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "evaluation/campaign/run_outcome.h"
+
 namespace bevloc::evaluation {
 namespace {
 
@@ -27,7 +29,7 @@ TEST(StanfordDiagramTest, CountsFromTheFirstPoseOfEachDriveOn) {
   }
   EXPECT_EQ(diagram.cycles(), 6U);
   EXPECT_EQ(diagram.valid(), 4U);
-  EXPECT_EQ(diagram.axis(0).available, 4U);
+  EXPECT_EQ(diagram.protection().available[0], 4U);
 }
 
 TEST(StanfordDiagramTest, ASilentApplianceHasNoPose) {
@@ -40,6 +42,29 @@ TEST(StanfordDiagramTest, ASilentApplianceHasNoPose) {
   diagram.begin_drive();
   diagram.add(cycle_at(9.0, true));
   EXPECT_EQ(diagram.cycles(), 302U) << "a drive has nothing to do with the one before";
+}
+
+TEST(StanfordDiagramTest, CountsAsARunDoes) {
+  StanfordDiagram diagram;
+  diagram.begin_drive();
+  RunJudge judge({10.0, 15.0}, {});
+  double time_s = 0.0;
+  for (const double error_m : {0.2, -0.3, 0.6}) {  // the level is 0.25 m, the alert limit 0.5 m
+    JudgedCycle cycle = cycle_at(time_s, true);
+    cycle.pose->error.y() = error_m;
+    diagram.add(cycle);
+    judge.add(cycle);
+    time_s += 0.01;
+  }
+  const ProtectionCounts& counted = diagram.protection();
+  EXPECT_EQ(counted.with_level, (PoseCounts{3, 3, 3}));
+  EXPECT_EQ(counted.misleading, (PoseCounts{0, 2, 0}));
+  EXPECT_EQ(counted.hazardous, (PoseCounts{0, 1, 0}));
+  const ProtectionCounts run = judge.outcome().protection;
+  EXPECT_EQ(run.misleading, counted.misleading);
+  EXPECT_EQ(run.hazardous, counted.hazardous);
+  EXPECT_EQ(run.available, counted.available);
+  EXPECT_NEAR(diagram.axis(1).worst_excess, 0.35, 1e-12);
 }
 
 TEST(StanfordDiagramTest, SaysHowManyDrivesHadAPose) {

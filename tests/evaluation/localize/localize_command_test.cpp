@@ -106,6 +106,7 @@ TEST_F(LocalizeCommandTest, ScoresManyPriorsAroundAKnownPose) {
   const nlohmann::json scores = answer()["priors"];
   EXPECT_EQ(scores["priors"], 20);
   EXPECT_EQ(scores["without_evidence"], 0);
+  EXPECT_EQ(scores["without_sigma"].size(), 3U);
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LT(scores["bevloc"]["mae"][axis], 0.7 * scores["prior"]["mae"][axis].get<double>());
   }
@@ -124,6 +125,18 @@ TEST_F(LocalizeCommandTest, SaysWhichCameraIsNotUsed) {
   EXPECT_THAT(said, HasSubstr("back: this camera is not used, because its picture is dark"));
   EXPECT_EQ(answer()["cameras_left_out"],
             nlohmann::json::parse(R"({"back": "its picture is dark"})"));
+}
+
+TEST_F(LocalizeCommandTest, WritesOverNoFileThatItReads) {
+  for (const char* input : {"rig.yaml", "town.bvm", "front.png"}) {
+    const std::string before = read_file(file(input)).value();
+    for (const char* option : {"--json", "--sheet"}) {
+      const Status refused = run({"--prior", text_of(pose_), option, file(input)});
+      ASSERT_FALSE(refused) << input;
+      EXPECT_THAT(refused.error().message, HasSubstr("found a file to write that is also read"));
+    }
+    EXPECT_EQ(read_file(file(input)).value(), before);
+  }
 }
 
 TEST_F(LocalizeCommandTest, SaysWhatIsWrong) {

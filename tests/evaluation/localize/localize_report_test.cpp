@@ -92,5 +92,36 @@ TEST(LocalizeReport, WithoutEvidenceNothingIsSaid) {
   for (const char* key : {"sigma", "at_border", "rival_peak"}) EXPECT_TRUE(json[key].is_null());
 }
 
+TEST(LocalizeReport, TooFewCamerasAreNotTrusted) {
+  Localization localization = localization_of(clear_match());
+  localization.cameras = CameraMask(0b11);
+  EXPECT_FALSE(localization.is_trusted());
+  EXPECT_EQ(json_of(localization)["trusted"], false);
+  EXPECT_THAT(text_of(localization),
+              HasSubstr("trusted: no, because fewer than 3 cameras were used\n"));
+  localization.cameras.set(2);
+  EXPECT_TRUE(localization.is_trusted());
+}
+
+TEST(LocalizeReport, AnAnswerWithoutASigmaIsNotWithinThree) {
+  PriorScores scores;
+  scores.priors.resize(2);
+  scores.matches.resize(2);
+  scores.matches[0].error = {5.0, 0.0, 0.0};
+  scores.matches[0].sigma = {kNotGiven, 0.1, 0.1};
+  scores.matches[1].error = {1.0, 0.0, 0.0};
+  scores.matches[1].sigma = {0.1, 0.1, 0.1};
+  EXPECT_THAT(text_of(scores), AllOf(HasSubstr("errors within 3 sigma, %   0 100 100\n"),
+                                     HasSubstr("answers without a sigma    1   0   0\n")));
+  const nlohmann::json json = json_of(scores);
+  EXPECT_EQ(json["bevloc"]["coverage_3s"], nlohmann::json::array({0.0, 1.0, 1.0}));
+  EXPECT_EQ(json["without_sigma"], nlohmann::json::array({1, 0, 0}));
+}
+
+TEST(LocalizeReport, WithoutEvidenceNoAxisHasASigma) {
+  EXPECT_THAT(sigma_of(localization_of(MatchResult())), testing::Each(testing::IsNan()));
+  EXPECT_DOUBLE_EQ(sigma_of(localization_of(clear_match()))[1], pose_sigma(clear_match()).y());
+}
+
 }  // namespace
 }  // namespace bevloc::evaluation

@@ -87,6 +87,19 @@ TEST(SolverScore, Summarises) {
   EXPECT_EQ(summary.median[0], 1.0);
 }
 
+TEST(SolverScore, CountsNoErrorWithoutASigmaAsCovered) {
+  std::vector<Outcome> outcomes(3);
+  for (Outcome& outcome : outcomes) outcome.error = {0.2, 0.2, 0.2};
+  outcomes[0].sigma = {kNotGiven, 0.3, kNotGiven};
+  outcomes[1].sigma = {0.1, 0.1, kNotGiven};
+  outcomes[2].sigma = {0.3, 0.3, kNotGiven};
+  const Summary summary = summarise(outcomes);
+  EXPECT_DOUBLE_EQ(summary.coverage_1s[0], 0.5);
+  EXPECT_DOUBLE_EQ(summary.coverage_3s[0], 1.0);
+  EXPECT_DOUBLE_EQ(summary.coverage_1s[1], 2.0 / 3.0);
+  EXPECT_TRUE(std::isnan(summary.coverage_1s[2]));
+}
+
 TEST(SolverScore, GivesNoMeasuresWithoutScenes) {
   const Summary summary = summarise({});
   EXPECT_EQ(summary.scenes, 0U);

@@ -1,0 +1,21 @@
+// The files that a configuration consists of.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "firmware/config/config.h"
+
+namespace bevloc::evaluation {
+
+/// The configuration and the files that it names and that are read. The name of a file that it does
+/// not name is empty.
+inline std::vector<std::filesystem::path> files_of(const firmware::Config& config) {
+  std::vector<std::filesystem::path> files{config.file,         config.rig_file,
+                                           config.map_file,     config.model_file,
+                                           config.can.dbc_file, config.manifest_file};
+  if (config.can.secoc) files.push_back(config.can.secoc->key_file);
+  return files;
+}
+
+}  // namespace bevloc::evaluation
