@@ -21,13 +21,14 @@ from pathlib import Path
 
 import torch
 
-from training.bundle_train import BUDGETS
+from training.bundle_train import CONTINUES, has_budget, without_budget
 from training.checkpoint import network_of, read_checkpoint, state_of_weights
 from training.config import TrainingConfig
 from training.errors import TrainingError, run_program
 from training.models.config import network_config
 from training.models.network import BevNetwork
 from training.options import parse_config
+from training.run_table import TABLES
 from training.sampler_process import BUNDLED, LOADER, PROGRAM, sampler_program
 from training.sources import training_stream
 from training.start_weights import start_with
@@ -43,7 +44,10 @@ ARCHIVE = ".tar.gz"
 PLAIN_BLAS = "/usr/lib/x86_64-linux-gnu/blas:/usr/lib/x86_64-linux-gnu/lapack"
 _ROOT = Path(__file__).resolve().parent.parent
 # Options that belong to the machine or are set by the bundle's program itself.
-_OWN_OPTIONS = ("run", "resume", "init", "photos", "threads", "sampler_threads")
+_OWN_OPTIONS = (
+    *("run", "resume", "stop_after_minutes", "init", "photos"),
+    *("threads", "sampler_threads"),
+)
 
 README = """# Training bundle of bevloc
 
@@ -133,11 +137,25 @@ def options_of_run(run: Path) -> list[str]:
 
 def checked(options: list[str], arguments: argparse.Namespace) -> TrainingConfig:
     """The configuration of the bundle's run. Wrong options end the program. Options without a
-    budget are accepted, because `train` may get one."""
+    budget are accepted, because `train` may get one. BundleError if the run needs what a bundle
+    does not hold, or if a file is missing."""
     given = [*options, "--init", str(arguments.init or ""), "--photos", str(arguments.photos or "")]
-    if not any(option.split("=")[0] in BUDGETS for option in options):
+    if not has_budget(options):
         given += ["--samples", "8"]
-    return parse_config(given, "options of the bundle's run")
+    config = parse_config(given, "options of the bundle's run")
+    if config.recordings:
+        raise BundleError(
+            "--recordings: found recorded drives, wanted a run on the simulator or nuScenes"
+        )
+    if config.init and not Path(config.init).is_file():
+        raise BundleError(
+            f"--init: found no file '{config.init}', wanted a checkpoint or float model file"
+        )
+    if config.photos and not Path(config.photos).is_dir():
+        raise BundleError(
+            f"--photos: found no folder '{config.photos}', wanted that of script/photos"
+        )
+    return config
 
 
 def copy_weights(config: TrainingConfig, run: Path | None, out: Path) -> None:
@@ -149,8 +167,9 @@ def copy_weights(config: TrainingConfig, run: Path | None, out: Path) -> None:
         wanted = network_config(config.network, config.view).name
         if found != wanted:
             raise BundleError(f"{path}: holds the network '{found}', wanted '{wanted}'")
+        (out / CONTINUES).touch()
         (out / "run").mkdir()
-        for name in ("checkpoint.pt", "curves.csv", "validation.csv"):
+        for name in ("checkpoint.pt", *TABLES):
             if (run / name).exists():
                 shutil.copyfile(run / name, out / "run" / name)
 
@@ -160,15 +179,28 @@ def size_of(folder: Path) -> int:
 
 
 def make(arguments: argparse.Namespace, options: list[str], out: Path) -> None:
-    """Writes the bundle into `out`, which must not exist. BundleError if it is too large."""
+    """Writes the bundle into `out`, which must not exist. BundleError if it is too large. An error
+    leaves no folder."""
     if arguments.run is not None:
-        options = [*options_of_run(arguments.run), *options]
+        stored = options_of_run(arguments.run)
+        options = [*(without_budget(stored) if has_budget(options) else stored), *options]
     config = checked(options, arguments)
     net = BevNetwork(network_config(config.network, config.view))
     weights = sum(parameter.numel() for parameter in net.parameters())
     if _BYTES_PER_WEIGHT * weights > CHECKPOINT_BYTES and not config.compact:
         options = [*options, "--compact"]
     out.mkdir(parents=True)
+    try:
+        fill(arguments, config, options, out)
+    except BaseException:
+        shutil.rmtree(out)
+        raise
+
+
+def fill(
+    arguments: argparse.Namespace, config: TrainingConfig, options: list[str], out: Path
+) -> None:
+    """Writes the files of the bundle into the empty folder `out`."""
     copy_python(out)
     copy_sampler(out / BUNDLED)
     if arguments.photos is not None:

@@ -20,6 +20,7 @@ FOLDER = Path(__file__).resolve().parent
 LEAST_PYTHON = (3, 10)
 LEAST_TORCH = (1, 13)
 BUDGETS = ("--minutes", "--samples")  # a run has one of them
+CONTINUES = "continues-run"  # a file of bundles that continue a run of another machine
 STREAMS = 4  # samplers of a run (training/data.py), each with --sampler-threads threads
 
 
@@ -44,19 +45,41 @@ def missing() -> str:
 
 
 def options(given: "list[str]") -> "list[str]":
-    """The options of training.train: the machine's and the bundle's own, then the given ones."""
+    """The options of training.train: the machine's and the bundle's own, then the given ones. Ends
+    the program if the run that the bundle continues is not where it would be resumed."""
     threads = max(1, len(os.sched_getaffinity(0)) // STREAMS)
     chosen = ["--sampler-threads", str(threads), "--run", str(FOLDER / "run")]
     if (FOLDER / "photos").is_dir():
         chosen += ["--photos", str(FOLDER / "photos")]
     if (FOLDER / "start.pt").is_file():
         chosen += ["--init", str(FOLDER / "start.pt")]
-    if (FOLDER / "run" / "checkpoint.pt").is_file():
+    run = run_folder(given)
+    if (run / "checkpoint.pt").is_file():
         chosen += ["--resume"]
+    elif (FOLDER / CONTINUES).is_file():
+        sys.exit(
+            f"train: --run: found no checkpoint.pt in {run}, wanted that of the run that this "
+            f"bundle continues; leave out --run, or copy {FOLDER / 'run'} there"
+        )
     own = json.loads((FOLDER / "options.json").read_text())
-    if any(option.split("=")[0] in BUDGETS for option in given):
+    if has_budget(given):
         own = without_budget(own)
     return [*chosen, *own, *given]
+
+
+def run_folder(given: "list[str]") -> Path:
+    """The folder of the run: that of the last --run, or the bundle's own."""
+    folder = FOLDER / "run"
+    for option, following in zip(given, [*given[1:], ""]):
+        if option == "--run":
+            folder = Path(following)
+        elif option.startswith("--run="):
+            folder = Path(option[len("--run=") :])
+    return folder
+
+
+def has_budget(given: "list[str]") -> bool:
+    return any(option.split("=")[0] in BUDGETS for option in given)
 
 
 def without_budget(own: "list[str]") -> "list[str]":

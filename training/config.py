@@ -6,8 +6,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 FIRST_TRAINING_SEED = 2**32  # evaluation seeds lie below it (sim/world/world_generator.h)
-# Each sampler of a run has 2^28 seeds (SEED_STRIDE in training/data.py). The first 2^26 of them are
-# for the run itself. Each of these uses has 2^26 more, which begin this far after the run's own:
+# A run has four samplers, or more if the number of its processes is not 1, 2 or 4. Each sampler has
+# 2^28 seeds (SEED_STRIDE in training/data.py). So the seed of a run is a multiple of 2^30 or more
+# (training/options.py), and runs with other seeds show other scenes. The first 2^26 seeds of each
+# sampler are for the run itself. Each of these uses has 2^26 more, which begin this far after the
+# run's own:
 USUAL_SEEDS = 2**26  # samples with the usual nuisances of a run with usual_share
 CALIBRATION_SEEDS = 2**27  # ranges of int8 and scales of the solvers
 QAT_SEEDS = 3 * 2**26  # quantization-aware training

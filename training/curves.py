@@ -1,4 +1,4 @@
-"""Draws the losses of a run and its errors on the evaluation scenes.
+"""Draws the losses of a run and its errors on the validation scenes.
 
     /usr/bin/python3 -m training.curves training/runs/nano models/nano_curves.png
 """
@@ -12,6 +12,8 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
+from training.run_table import CURVES, VALIDATION
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (imported after the backend is chosen)
 
@@ -23,8 +25,8 @@ _LOSS_PANELS = (
     ("Refined solver: -log P(truth)", ("ref_x", "ref_y", "ref_yaw")),
 )
 _VALIDATION_PANELS = (
-    ("Evaluation scenes: MAE (m, m, degrees)", ("joint_x_mae", "joint_y_mae", "joint_yaw_mae")),
-    ("Evaluation scenes: IoU", ("iou_divider", "iou_crossing", "iou_boundary")),
+    ("Validation scenes: MAE (m, m, degrees)", ("joint_x_mae", "joint_y_mae", "joint_yaw_mae")),
+    ("Validation scenes: IoU", ("iou_divider", "iou_crossing", "iou_boundary")),
 )
 _SMOOTHED_ROWS = 9
 
@@ -59,15 +61,15 @@ def _draw_losses(axes: plt.Axes, title: str, curves: Table, names: tuple[str, ..
 def draw(run: Path, out: Path) -> None:
     """Writes a figure with the losses in curves.csv of a run, and with the errors in its
     validation.csv if there is one."""
-    curves = read_table(run / "curves.csv")
-    validated = (run / "validation.csv").exists()
+    curves = read_table(run / CURVES)
+    validated = (run / VALIDATION).exists()
     columns = 3 if validated else 2
     size = (4.7 * columns, 6.5)
     figure, panels = plt.subplots(2, columns, figsize=size, constrained_layout=True)
     for axes, (title, names) in zip(panels.flat, _LOSS_PANELS):
         _draw_losses(axes, title, curves, names)
     if validated:
-        validation = read_table(run / "validation.csv")
+        validation = read_table(run / VALIDATION)
         for axes, (title, names) in zip(panels.flat[len(_LOSS_PANELS) :], _VALIDATION_PANELS):
             axes.set_title(title)
             for name in names:

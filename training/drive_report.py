@@ -14,11 +14,12 @@ import argparse
 from pathlib import Path
 
 from training.errors import run_program
-from training.evaluate import AXES, CLASSES, evaluate_model_file
+from training.evaluate import AXES, CLASSES, evaluate_native
 from training.export_onnx import SHIPPED_SOLVER
 from training.markdown import table
 from training.option_types import positive, writable
 from training.options import add_drive_options, drives_of
+from training.runtime import NativeNetwork
 from training.sampler_process import Drives
 from training.sources import drive_batches
 
@@ -49,9 +50,10 @@ def report(
     before: Path, after: Path, drives: Drives, samples: int, threads: int
 ) -> str:
     """The text of the report."""
+    networks = [NativeNetwork(model, threads) for model in (before, after)]
     counts = drives.facts().samples
     batches = drive_batches(drives, "held-back", samples, threads)
-    metrics = [evaluate_model_file(model, batches, threads) for model in (before, after)]
+    metrics = [evaluate_native(network, batches) for network in networks]
     used = sum(len(batch) for batch in batches)
     lines = [
         "# Recorded drives, before and after training",

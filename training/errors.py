@@ -23,8 +23,16 @@ class MarksError(TrainingError, ValueError):
 
 
 def run_program(main: Callable[[], None]) -> None:
-    """Runs `main`; on a TrainingError, prints its message without a traceback and exits with 1."""
+    """Runs `main`. On a TrainingError, or if the system refuses a file, prints a message of one
+    line without a traceback and exits with 1."""
     try:
         main()
     except TrainingError as error:
         sys.exit(str(error))
+    except OSError as error:
+        if error.filename is None:  # not a file that the user named
+            raise
+        sys.exit(
+            f"{error.filename}: found no way to use it ({error.strerror}), wanted a usable file or "
+            "folder"
+        )

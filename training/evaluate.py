@@ -143,9 +143,8 @@ def summary(metrics: dict[str, float]) -> str:
     return "\n".join([*lines, f"{'IoU':15} {iou}"])
 
 
-def evaluate_model_file(model: Path, batches: list[Batch], threads: int) -> dict[str, float]:
+def evaluate_native(network: NativeNetwork, batches: list[Batch]) -> dict[str, float]:
     """The metrics of a model file on the daemon's own network and solvers."""
-    network = NativeNetwork(model, threads)
     solvers = {kind: NativeSolver(network, kind) for kind in NATIVE_SOLVERS}
     return evaluate(network, solvers, batches, torch.device("cpu"))
 
@@ -183,12 +182,15 @@ def main() -> None:
         )
         print(summary(evaluate(float_inference(net), solvers, every, device)))
         return
+    network = None
+    if arguments.write:
+        # Before the long evaluation, so that a missing file is named at once.
+        network = NativeNetwork(arguments.write / f"{net.config.name}.onnx", arguments.threads)
     batches = simulator_batches(arguments.samples, arguments.threads)
     metrics = evaluate(float_inference(net), solvers, batches, device)
     print(f"float\n{summary(metrics)}", flush=True)
-    if arguments.write:
-        model = arguments.write / f"{net.config.name}.onnx"
-        int8_metrics = evaluate_model_file(model, batches, arguments.threads)
+    if network is not None:
+        int8_metrics = evaluate_native(network, batches)
         print(f"int8\n{summary(int8_metrics)}", flush=True)
         trained = read_checkpoint(arguments.checkpoint)["samples"]
         results = Results(trained, arguments.samples, metrics, int8_metrics)

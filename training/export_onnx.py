@@ -16,6 +16,7 @@ Outputs, in float: bev_features and map_features [1, 16, 100, 50], bev_mask (log
 from __future__ import annotations
 
 import argparse
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -209,6 +210,16 @@ def check_source(config: Mapping[str, Any], checkpoint: Path, drives: Drives | N
         )
 
 
+def check_simulated(config: Mapping[str, Any], checkpoint: Path) -> None:
+    """TrainingError if a run had other samples than simulated ones, for programs that use only
+    those. `config`: of the run."""
+    for option, samples in (("nuscenes", "nuScenes"), ("recordings", "recorded drives")):
+        if folder := config.get(option):
+            raise TrainingError(
+                f"{checkpoint}: found a run on {samples} ({folder}), wanted one on the simulator"
+            )
+
+
 def fitting_batches(
     drives: Drives | None, nuisances: str, samples: int, threads: int
 ) -> tuple[list[Batch], list[Batch]]:
@@ -245,6 +256,25 @@ def write_model(
     onnx.save(float_model, str(folder / f"{name}_float.onnx"))
 
 
+def fit_result(
+    net: BevNetwork,
+    quantization: Quantization,
+    rig: Mapping[str, str],
+    batches: list[Batch],
+    usual: list[Batch],
+    threads: int,
+) -> ResultScales:
+    """Fits the scales of sigma (`batches`) and score (`usual`) on the daemon's own network and
+    solver. TrainingError if the daemon would refuse them."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_model(net, quantization, ResultScales(), rig, Path(folder))
+        network = NativeNetwork(Path(folder) / f"{net.config.name}.onnx", threads)
+        solver = NativeSolver(network, SHIPPED_SOLVER)
+        return ResultScales(
+            fit_sigma_scale(network, solver, batches), fit_score_scale(network, solver, usual)
+        )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
@@ -265,14 +295,9 @@ def main() -> None:
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))
     fit_scales(net.solvers, int8_inference(net, quantization), batches)
     torch.save(net.solvers.state_dict(), arguments.checkpoint.with_name(SOLVERS_FILE))
+    result = fit_result(net, quantization, rig, batches, usual, arguments.threads)
     arguments.models.mkdir(parents=True, exist_ok=True)
     shipped = arguments.models / f"{net.config.name}.onnx"
-    write_model(net, quantization, ResultScales(), rig, arguments.models)
-    network = NativeNetwork(shipped, arguments.threads)
-    solver = NativeSolver(network, SHIPPED_SOLVER)
-    result = ResultScales(
-        fit_sigma_scale(network, solver, batches), fit_score_scale(network, solver, usual)
-    )
     write_model(net, quantization, result, rig, arguments.models)
     for path in (shipped, shipped.with_name(f"{net.config.name}_float.onnx")):
         print(f"{path}: {path.stat().st_size / 1e6:.2f} MB", flush=True)

@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 
 from training.data import Batch
+from training.errors import TrainingError
 from training.evaluate import Inference, Solver
 from training.losses import pose_losses
 from training.runtime import NativeSolution
@@ -18,6 +19,7 @@ from training.solver import Posterior, PoseSolvers, estimate, standardise
 RATE, FINAL_RATE = 0.2, 0.02
 ROUNDS = 3
 RIGHT_M = (1.0, 0.3)  # a match with smaller errors in x and y has found the right place
+FACTORS = (0.1, 10.0)  # the range that the daemon accepts (pipeline/network/network.cpp)
 TYPICAL_SCORE = 0.32  # their mean score when the limits of evidence were chosen
 
 ScoringSolver = Callable[[Tensor, Tensor], NativeSolution]
@@ -63,13 +65,14 @@ def _standardised_features(infer: Inference, batch: Batch) -> tuple[Tensor, Tens
 @torch.no_grad()
 def fit_sigma_scale(infer: Inference, solver: Solver, batches: list[Batch]) -> float:
     """The factor by which to multiply the standard deviations of `solver` so that one sigma covers
-    68.3 % of the errors, as for a Gaussian (geometric mean over the axes)."""
+    68.3 % of the errors, as for a Gaussian (geometric mean over the axes). TrainingError if it is
+    not in FACTORS."""
     ratios = []
     for batch in batches:
         solution = solver(*infer(batch)[:2])
         ratios.append((solution.estimate - batch.correction).abs() / solution.deviation)
     quantiles = torch.cat(ratios).quantile(0.683, dim=0)
-    return quantiles.log().mean().exp().item()
+    return _usable("sigma", quantiles.log().mean().exp().item())
 
 
 @torch.no_grad()
@@ -77,11 +80,22 @@ def fit_score_scale(
     infer: Inference, solver: ScoringSolver, batches: list[Batch]
 ) -> float:
     """The factor by which to multiply the scores so that matches of the right place have the mean
-    score TYPICAL_SCORE. The limits of evidence (pipeline/tracker/evidence.h) then fit `infer`."""
+    score TYPICAL_SCORE. The limits of evidence (pipeline/tracker/evidence.h) then fit `infer`.
+    TrainingError if it is not in FACTORS, or if no match has found the right place."""
     scores = []
     for batch in batches:
         solution = solver(*infer(batch)[:2])
         errors = (solution.estimate - batch.correction).abs()
         right = (errors[:, :2] < torch.tensor(RIGHT_M)).all(dim=1)
         scores.append(solution.score[right])
-    return TYPICAL_SCORE / torch.cat(scores).mean().item()
+    return _usable("score", (TYPICAL_SCORE / torch.cat(scores).mean()).item())
+
+
+def _usable(name: str, factor: float) -> float:
+    least, most = FACTORS
+    if not least <= factor <= most:
+        raise TrainingError(
+            f"factor of the {name}: found {factor:.3g}, wanted {least:g} to {most:g}; the network "
+            "does not find the right place often enough, so train it longer"
+        )
+    return factor

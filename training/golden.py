@@ -20,7 +20,7 @@ import torch
 from training.checkpoint import load_network
 from training.config import FIRST_GOLDEN_SEED
 from training.data import Batch, SamplerStream
-from training.errors import run_program
+from training.errors import TrainingError, run_program
 from training.evaluate import Inference, float_inference
 from training.export_onnx import QUANTIZATION_FILE, SOLVERS_FILE
 from training.golden_solver import write_solver_vectors
@@ -60,6 +60,13 @@ def _write_outputs(
     np.save(out / f"{name}_joint.npy", _distributions(solvers.joint(*sides)))
 
 
+def check_exported(checkpoint: Path) -> None:
+    """TrainingError if a file that training.export_onnx writes next to a checkpoint is missing."""
+    for name in (QUANTIZATION_FILE, SOLVERS_FILE):
+        if not (path := checkpoint.with_name(name)).is_file():
+            raise TrainingError(f"{path}: no such file, wanted it; run training.export_onnx first")
+
+
 @torch.no_grad()
 def write_network_vectors(checkpoint: Path, out: Path) -> None:
     out.mkdir(parents=True, exist_ok=True)
@@ -80,6 +87,8 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("tests/golden"))
     arguments = parser.parse_args()
     torch.set_num_threads(1)
+    if arguments.checkpoint:
+        check_exported(arguments.checkpoint)
     write_solver_vectors(arguments.out / "solver")
     if arguments.checkpoint:
         write_network_vectors(arguments.checkpoint, arguments.out / "network")

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 
 from training.config import FIRST_TRAINING_SEED, TrainingConfig
-from training.data import NUISANCES
+from training.data import NUISANCES, SamplerStream
 from training.model import check_fits_sampler
 from training.models.config import network_config
 from training.nuscenes.stream import ON_ERROR
@@ -109,6 +109,7 @@ def _option_name(field: str) -> str:
 def _check(config: TrainingConfig, processes: int) -> None:
     """ValueError if the options contradict each other or have invalid values."""
     _check_ranges(config)
+    _check_seed(config, processes)
     if (config.minutes > 0) == (config.samples > 0):
         found = "both" if config.minutes > 0 else "none"
         raise ValueError(f"budget: found {found}, wanted either --minutes or --samples")
@@ -130,6 +131,15 @@ def _check(config: TrainingConfig, processes: int) -> None:
     if bool(config.recordings) != bool(config.map):
         raise ValueError("--recordings and --map: found one of them, wanted both or none")
     check_fits_sampler(network_config(config.network, config.view))
+
+
+def _check_seed(config: TrainingConfig, processes: int) -> None:
+    """ValueError if a run of as many processes with another seed could show the same scenes."""
+    samplers = math.lcm(SamplerStream.STREAMS, processes)
+    apart = SamplerStream.SEED_STRIDE * 2 ** (samplers - 1).bit_length()
+    if not config.nuscenes and config.seed % apart:
+        wanted = f"wanted a multiple of {apart}, because a run uses the scenes of so many seeds"
+        raise ValueError(f"--seed: found {config.seed}, {wanted}")
 
 
 def _check_ranges(config: TrainingConfig) -> None:

@@ -17,6 +17,7 @@ import yaml
 from PIL import Image
 
 from training.data import SamplerStream
+from training.errors import TrainingError, run_program
 from training.markdown import row, table
 from training.model import IMAGE_COLS, IMAGE_ROWS
 from training.option_types import positive
@@ -85,11 +86,14 @@ def network_crop(picture: Image.Image, principal_row: float) -> np.ndarray:
 
 
 def real(folder: Path, rig: Path) -> np.ndarray:
+    """The pictures of a folder as the network sees them. TrainingError if there is none."""
     crops = []
     for name, camera in yaml.safe_load(rig.read_text())["cameras"].items():
         for file in sorted(folder.glob(f"{name}.*")):
             with Image.open(file) as picture:
                 crops.append(network_crop(picture, camera["cy_px"]))
+    if not crops:
+        raise TrainingError(f"{folder}: found no picture of a camera of {rig}, wanted one of each")
     return np.stack(crops)
 
 
@@ -103,6 +107,8 @@ def main() -> None:
     if bool(options.real) != bool(options.rig):
         parser.error("--real and --rig: found one of them, wanted both or none")
     names = [field.name.replace("_", " ") for field in fields(Statistics)]
+    # Before the samples are rendered, so that a missing picture is named at once.
+    real_pictures = real(options.real, options.rig) if options.real else None
     print(table(("pictures", *names), ()), end="")
 
     def print_row(name: str, pictures: np.ndarray) -> None:
@@ -114,9 +120,9 @@ def main() -> None:
     if options.photos:
         with_photos = simulated("street", options.photos, options.samples)
         print_row("street samples, photographs", with_photos)
-    if options.real and options.rig:
-        print_row("real frame", real(options.real, options.rig))
+    if real_pictures is not None:
+        print_row("real frame", real_pictures)
 
 
 if __name__ == "__main__":
-    main()
+    run_program(main)

@@ -9,6 +9,7 @@ import torch
 
 PRECISIONS = ("auto", "float32", "bfloat16")
 _CPU_FLAGS = ("amx_bf16", "avx512_bf16")
+_FIRST_CUDA_WITH_BFLOAT16 = (8, 0)  # compute capability
 _CPU_INFO = Path("/proc/cpuinfo")
 
 
@@ -31,13 +32,23 @@ def cpu_flags(cpu_info: Path = _CPU_INFO) -> set[str]:
     return set(next(listed, ()))
 
 
+def _computes_bfloat16(device: torch.device) -> bool:
+    """Whether a GPU has instructions for bfloat16. torch.cuda.is_bf16_supported() also accepts the
+    slow emulation on older GPUs."""
+    if torch.version.hip is not None:
+        return True
+    return torch.cuda.get_device_capability(device) >= _FIRST_CUDA_WITH_BFLOAT16
+
+
 def choose_precision(wanted: str, device: torch.device, flags: set[str]) -> Precision:
     """`wanted`: one of PRECISIONS. `flags`: the CPU's feature flags."""
     if wanted != "auto":
         return Precision(wanted == "bfloat16", f"--precision {wanted}")
     if device.type == "cuda":
-        able = torch.cuda.is_bf16_supported()
+        able = _computes_bfloat16(device)
         return Precision(able, f"the GPU {'has' if able else 'lacks'} bfloat16")
+    if not torch._C._get_mkldnn_enabled():
+        return Precision(False, "oneDNN, which has the instructions of the CPU, is off")
     for flag in _CPU_FLAGS:
         if flag in flags:
             return Precision(True, f"the CPU has {flag}")

@@ -20,7 +20,7 @@ from training.checkpoint import load_network, nuisances_of, read_checkpoint, sta
 from training.config import FIRST_TRAINING_SEED, QAT_SEEDS
 from training.data import Batch, SamplerStream, Stream
 from training.errors import NotFiniteError, run_program
-from training.export_onnx import calibration_batches
+from training.export_onnx import calibration_batches, check_simulated
 from training.fake_quantization import FakeQuantized
 from training.losses import pose_losses, semantic_loss
 from training.model import real_raster
@@ -105,6 +105,7 @@ def main() -> None:
         wanted = f"wanted at least one batch of {arguments.batch}"
         parser.error(f"--samples: found {arguments.samples}, {wanted}")
     torch.set_num_threads(arguments.threads)
+    check_simulated(read_checkpoint(arguments.checkpoint)["config"], arguments.checkpoint)
     net = load_network(arguments.checkpoint)
     threads, nuisances = arguments.threads, nuisances_of(arguments.checkpoint)
     batches = calibration_batches(arguments.calibration, threads, nuisances)

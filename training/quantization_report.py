@@ -16,11 +16,11 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from training.checkpoint import load_network, nuisances_of
+from training.checkpoint import load_network, nuisances_of, read_checkpoint
 from training.data import Batch
 from training.errors import run_program
 from training.evaluate import AXES, Inference
-from training.export_onnx import calibration_batches, quantization_of
+from training.export_onnx import calibration_batches, check_simulated, quantization_of
 from training.layer_errors import LayerError, layer_errors
 from training.markdown import table, write_between_marks
 from training.models.network import BevNetwork
@@ -30,7 +30,7 @@ from training.solver import PoseSolvers
 from training.sources import BATCH, simulator_batches
 
 BEGIN, END = "<!-- quantization_report: begin -->\n", "<!-- quantization_report: end -->\n"
-SOLVERS = ("block", "decoupled+refine")
+SOLVER = "block"
 _UNITS = ("m", "m", "degrees")
 
 
@@ -70,33 +70,29 @@ def float_inference_of(net: BevNetwork, quantization: Quantization) -> Inference
 @torch.no_grad()
 def pose_errors(
     infer: Inference, solvers: PoseSolvers, batches: list[Batch]
-) -> dict[str, Tensor]:
-    """The absolute errors of each solver, [samples, 3]: m, m, degrees."""
-    errors: dict[str, list[Tensor]] = {kind: [] for kind in SOLVERS}
+) -> Tensor:
+    """The absolute errors of SOLVER, [samples, 3]: m, m, degrees."""
+    errors: list[Tensor] = []
     for batch in batches:
         bev, features_map, _ = infer(batch)
-        for kind in SOLVERS:
-            error = solvers.solve(kind, bev, features_map).estimate - batch.correction
-            errors[kind].append(error.abs())
-    in_degrees = torch.tensor([1.0, 1.0, 180.0 / math.pi])
-    return {kind: torch.cat(parts) * in_degrees for kind, parts in errors.items()}
+        error = solvers.solve(SOLVER, bev, features_map).estimate - batch.correction
+        errors.append(error.abs())
+    return torch.cat(errors) * torch.tensor([1.0, 1.0, 180.0 / math.pi])
 
 
-def pose_table(exact: dict[str, Tensor], rounded: dict[str, Tensor]) -> str:
+def pose_table(exact: Tensor, rounded: Tensor) -> str:
     """A table of both MAE and the mean of the paired differences with its standard error."""
-    rows = []
-    for kind in SOLVERS:
-        difference = rounded[kind] - exact[kind]
-        spread = difference.std(0) / math.sqrt(len(difference))
-        for i, axis in enumerate(AXES):
-            rows.append(
-                [
-                    f"{kind}, {axis} ({_UNITS[i]})",
-                    f"{exact[kind][:, i].mean():.4f}",
-                    f"{rounded[kind][:, i].mean():.4f}",
-                    f"{difference[:, i].mean():+.4f} ± {spread[i]:.4f}",
-                ]
-            )
+    difference = rounded - exact
+    spread = difference.std(0) / math.sqrt(len(difference))
+    rows = [
+        [
+            f"{SOLVER}, {axis} ({_UNITS[i]})",
+            f"{exact[:, i].mean():.4f}",
+            f"{rounded[:, i].mean():.4f}",
+            f"{difference[:, i].mean():+.4f} ± {spread[i]:.4f}",
+        ]
+        for i, axis in enumerate(AXES)
+    ]
     return table(["MAE", "float", "int8", "int8 - float"], rows)
 
 
@@ -128,6 +124,7 @@ def main() -> None:
     parser.add_argument("--write", type=Path, help="document whose tables are updated")
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
+    check_simulated(read_checkpoint(arguments.checkpoint)["config"], arguments.checkpoint)
     net = load_network(arguments.checkpoint)
     calibration = calibration_batches(
         arguments.calibration, arguments.threads, nuisances_of(arguments.checkpoint)

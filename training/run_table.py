@@ -5,6 +5,10 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+# Of the losses and of the errors of validations. Both have a column `samples`: how many the run had
+# used.
+CURVES, VALIDATION = "curves.csv", "validation.csv"
+TABLES = (CURVES, VALIDATION)
 _UNKNOWN = "nan"
 
 
@@ -17,6 +21,16 @@ def append_row(path: Path, row: dict[str, float]) -> None:
         _write(path, columns, rows)
     with path.open("a", newline="") as file:
         csv.DictWriter(file, columns, restval=_UNKNOWN).writerow(row)
+
+
+def drop_rows_after(run: Path, samples: int) -> None:
+    """Removes the rows of more than `samples` samples from both tables of a run. A run that is
+    continued from an older checkpoint writes them again."""
+    for path in (run / name for name in TABLES):
+        columns, rows = _read(path)
+        kept = [row for row in rows if float(row["samples"]) <= samples]
+        if len(kept) < len(rows):
+            _write(path, columns, kept)
 
 
 def _read(path: Path) -> tuple[list[str], list[dict[str, str]]]:

@@ -12,6 +12,7 @@ import torch
 from torch import Tensor
 
 from training.data import Batch
+from training.errors import TrainingError
 from training.model import BEV_COLS, BEV_ROWS
 from training.native import address, library
 from training.solver import DEFINITION, Posterior, Solution, hypotheses
@@ -21,14 +22,14 @@ _ERROR_SIZE = 1000
 
 
 class NativeNetwork:
-    """A model file on the daemon's executor. ValueError if the file cannot be loaded."""
+    """A model file on the daemon's executor. TrainingError if the file cannot be loaded."""
 
     def __init__(self, model: Path, threads: int = 1) -> None:
         error = ctypes.create_string_buffer(_ERROR_SIZE)
         path = str(model).encode()
         self.handle = library().bevloc_network_create(path, threads, error, _ERROR_SIZE)
         if not self.handle:
-            raise ValueError(error.value.decode())
+            raise TrainingError(error.value.decode())
         weakref.finalize(self, library().bevloc_network_destroy, self.handle)
 
     def __call__(self, batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
@@ -54,7 +55,7 @@ class NativeSolution(Solution):
 
 
 class NativeSolver:
-    """A solver of the given kind with the parameters of a model file. ValueError for an unknown
+    """A solver of the given kind with the parameters of a model file. TrainingError for an unknown
     kind."""
 
     def __init__(self, network: NativeNetwork, kind: str) -> None:
@@ -62,7 +63,7 @@ class NativeSolver:
         create = library().bevloc_solver_create
         self.handle = create(network.handle, kind.encode(), error, _ERROR_SIZE)
         if not self.handle:
-            raise ValueError(error.value.decode())
+            raise TrainingError(error.value.decode())
         weakref.finalize(self, library().bevloc_solver_destroy, self.handle)
 
     def __call__(self, bev: Tensor, features_map: Tensor) -> NativeSolution:

@@ -141,6 +141,16 @@ def drive_batches(drives: Drives, part: str, samples: int, threads: int) -> list
     return list(_batches(stream, min(samples, existing)))
 
 
+def _check_parts(drives: Drives) -> None:
+    """TrainingError if a part of the drives has no sample."""
+    for part, samples in drives.facts().samples.items():
+        if samples == 0:
+            raise TrainingError(
+                f"{drives.recordings}: found no sample of the part {part}, wanted some; give "
+                "drives with reference poses through more squares (docs/own-drives.md)"
+            )
+
+
 def _check_scenes(config: TrainingConfig) -> None:
     """TrainingError if a scene is in both files."""
     trained = set(read_scene_names(Path(config.scenes)))
@@ -153,10 +163,13 @@ def _check_scenes(config: TrainingConfig) -> None:
 
 def validation_set(config: TrainingConfig) -> list[Batch]:
     """A fixed set with all cameras that neither training nor the figures of a finished network
-    see. For nuScenes the set is empty unless `validation_scenes` is given."""
+    see. For nuScenes the set is empty unless `validation_scenes` is given. TrainingError if
+    recorded drives have no sample of a part."""
     samples, threads = config.validation_samples, config.sampler_threads
     if config.recordings:
-        return drive_batches(drives_of(config), "calibration", samples, threads)
+        drives = drives_of(config)
+        _check_parts(drives)
+        return drive_batches(drives, "calibration", samples, threads)
     if not config.nuscenes:
         return simulator_batches(samples, threads, FIRST_VALIDATION_SEED)
     if not config.validation_scenes:

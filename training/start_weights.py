@@ -36,7 +36,8 @@ def start_with(net: BevNetwork, path: Path, make_batches: Callable[[], list[Batc
 
 
 def load_model_file(net: BevNetwork, path: Path) -> None:
-    """Loads the folded convolutions; the batch normalisations only add the bias."""
+    """Loads the folded convolutions; the batch normalisations only add the bias. CheckpointError if
+    the file is unreadable or holds another network."""
     import onnx  # a training bundle starts from a checkpoint and does without it
     from onnx import numpy_helper
 
@@ -46,6 +47,8 @@ def load_model_file(net: BevNetwork, path: Path) -> None:
         raise CheckpointError(f"{path}: unreadable as a model ({error})") from error
     values = {item.name: numpy_helper.to_array(item) for item in model.graph.initializer}
     stated = {item.key: item.value for item in model.metadata_props}
+    if (found := stated.get("bevloc.model", "")) != net.config.name:
+        raise CheckpointError(f"{path}: holds the network '{found}', wanted '{net.config.name}'")
     with torch.no_grad():
         for name, module in net.named_modules():
             if isinstance(module, ConvBn):

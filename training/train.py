@@ -27,7 +27,7 @@ from training.config import TrainingConfig
 from training.data import Batch, Stream, augment
 from training.distributed import WHOLE, Processes, Share
 from training.early_stop import Patience
-from training.errors import CheckpointError, NotFiniteError, TrainingError
+from training.errors import CheckpointError, NotFiniteError, TrainingError, run_program
 from training.evaluate import (
     AXES,
     CLASSES,
@@ -46,7 +46,7 @@ from training.options import parse_config
 from training.precision import choose_precision, cpu_flags
 from training.progress import Progress
 from training.read_ahead import ReadAhead
-from training.run_table import append_row
+from training.run_table import CURVES, VALIDATION, append_row, drop_rows_after
 from training.solver import DEFINITION, estimate, standardise
 from training.sources import training_stream, validation_set
 from training.start_weights import start_with
@@ -123,6 +123,8 @@ class Trainer:
         config.run.mkdir(parents=True, exist_ok=True)
         if self.checkpoint_path.exists():
             self._continue()
+        if processes.first:
+            drop_rows_after(config.run, self.samples)
         self.validation = validation
         self._validated_step = self.step
         self._check_patience()
@@ -293,7 +295,7 @@ class Trainer:
     def _measure(self) -> None:
         solvers = torch_solvers(self.average.solvers)
         metrics = evaluate(float_inference(self.average), solvers, self.validation, self.device)
-        self._append("validation.csv", {"samples": self.samples, **metrics})
+        self._append(VALIDATION, {"samples": self.samples, **metrics})
         print(summary(metrics), flush=True)
         if self.patience.limit > 0:
             self.patience.watch(metrics, self.samples)
@@ -304,7 +306,7 @@ class Trainer:
     def _log(self, progress: Progress, norm: float, spent: float) -> None:
         row = dict(zip(LOSSES, (round(v, 5) for v in progress.mean_losses().tolist())))
         lr = self.optimiser.param_groups[0]["lr"]
-        self._append("curves.csv", {"step": self.step, "samples": self.samples, "lr": lr, **row})
+        self._append(CURVES, {"step": self.step, "samples": self.samples, "lr": lr, **row})
         left_min = self.elapsed_s * (1 / max(spent, 1e-6) - 1) / 60
         solvers = self.net.solvers
         scales = " ".join(f"{name} {solvers.scale(name).item():.0f}" for name in solvers.log_scale)
@@ -387,10 +389,8 @@ def main() -> None:
     except NotFiniteError as error:
         print(error, file=sys.stderr, flush=True)
         sys.exit(EXIT_NOT_FINITE)
-    except TrainingError as error:
-        sys.exit(str(error))
     sys.exit(0 if finished else EXIT_STOPPED)
 
 
 if __name__ == "__main__":
-    main()
+    run_program(main)

@@ -31,6 +31,11 @@ class Refusals(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             self.expect_refused(f"found '{folder}', which is no file", "image", "--out", folder)
 
+    def test_train_checks_the_number_of_scenes_before_it_trains(self) -> None:
+        for wrong in ("0", "-5", "1e3", "many"):
+            message = f"--evaluation: found '{wrong}', wanted a whole number of at least 1"
+            self.expect_refused(message, "train", "--samples", "8", "--evaluation", wrong)
+
     def test_package_builds_for_this_machine_or_in_a_root(self) -> None:
         for more in (["arm64", "trixie"], ["--test"]):
             self.expect_refused(f"found '--here {' '.join(more)}'", "package", "--here", *more)

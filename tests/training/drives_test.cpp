@@ -18,10 +18,10 @@ using test::demo_rig;
 using test::PictureDrive;
 using testing::HasSubstr;
 
-/// A straight line to the east on both sides of the drive.
+/// A straight line on both sides of the drive.
 HdMap map_along(double length_m) {
   HdMap map;
-  for (const double y_m : {-2.0, 2.0}) {
+  for (const double y_m : {PictureDrive::kNorth_m - 2.0, PictureDrive::kNorth_m + 2.0}) {
     map.elements.push_back(
         {.element_class = ElementClass::kLaneDivider, .points = {{-100.0, y_m}, {length_m, y_m}}});
   }

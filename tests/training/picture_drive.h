@@ -21,7 +21,9 @@
 namespace bevloc::test {
 
 /// A drive to the east at 10 m/s with a picture of each camera every 0.1 s, of which only the
-/// indexes are real unless `with_pictures`.
+/// indexes are real unless `with_pictures`. It starts kNorth_m north of the map's origin, in the
+/// middle of a row of squares (drive_parts.h). The fourth square is held back, the seventh is for
+/// calibration.
 class PictureDrive {
  public:
   explicit PictureDrive(int framesets, bool with_pictures = false) {
@@ -51,7 +53,8 @@ class PictureDrive {
     std::vector<ReferenceTrajectory::Pose> poses;
     for (double time_s = from_s - 0.1; time_s <= to_s + 0.2; time_s += 0.1) {
       const Eigen::Vector2d place = time_s * velocity;
-      poses.push_back({kStart + from_seconds(time_s), {place.x(), place.y(), heading_rad}});
+      poses.push_back(
+          {kStart + from_seconds(time_s), {place.x(), kNorth_m + place.y(), heading_rad}});
     }
     write_reference(poses);
   }
@@ -68,6 +71,7 @@ class PictureDrive {
   }
 
   static constexpr Time kStart{std::chrono::seconds(100)};
+  static constexpr double kNorth_m = 50.0;
 
  private:
   TemporaryFolder folder_;

@@ -17,10 +17,17 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from training.bundle import LIMIT_BYTES, BundleError, make, options_of_run, size_of
-from training.bundle_train import without_budget
-from training.checkpoint import read_checkpoint
-from training.config import FIRST_VALIDATION_SEED
+from training.bundle import (
+    LIMIT_BYTES,
+    BundleError,
+    copy_weights,
+    make,
+    options_of_run,
+    size_of,
+)
+from training.bundle_train import CONTINUES, options, without_budget
+from training.checkpoint import read_checkpoint, state_of_weights
+from training.config import FIRST_VALIDATION_SEED, TrainingConfig
 from training.sampler_process import (
     ENVIRONMENT,
     LOADER,
@@ -109,10 +116,10 @@ class Bundle(unittest.TestCase):
 
     def test_checkpoints_that_would_be_too_large_are_compact(self):
         arguments = argparse.Namespace(init=None, run=None, photos=None)
-        options = ["--samples", "2", "--network", "small", "--view", "lut"]
-        make(arguments, options, self.folder / "small")
+        given = ["--samples", "2", "--network", "small", "--view", "lut"]
+        make(arguments, given, self.folder / "small")
         stored = json.loads((self.folder / "small" / "options.json").read_text())
-        self.assertEqual(stored, [*options, "--compact"])
+        self.assertEqual(stored, [*given, "--compact"])
         self.assertNotIn("--compact", (self.bundle / "options.json").read_text())
 
     def test_wrong_options_are_refused_when_it_is_made(self):
@@ -131,12 +138,92 @@ class Bundle(unittest.TestCase):
         arguments = argparse.Namespace(init=None, run=None, photos=photos)
         with self.assertRaisesRegex(BundleError, "MiB, wanted at most 60 MiB"):
             make(arguments, ["--samples", "2"], self.folder / "large")
+        self.assertFalse((self.folder / "large").exists())
 
 
 class Options(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def bundled(self, run: TrainingConfig, *options: str) -> list[str]:
+        """The options of a bundle that continues a run."""
+        torch.save(state_of_weights({}, run.as_dict()), self.folder / "checkpoint.pt")
+        arguments = argparse.Namespace(init=None, run=self.folder, photos=None)
+        with unittest.mock.patch("training.bundle.fill") as fill:
+            make(arguments, list(options), self.folder / "bundle")
+        return fill.call_args.args[2]
+
+    def test_a_bundle_continues_a_run_without_the_end_of_its_part(self):
+        run = TrainingConfig(minutes=60, stop_after_minutes=9, batch=16)
+        self.assertEqual(self.bundled(run), ["--minutes", "60", "--batch", "16"])
+
+    def test_a_bundle_continues_a_run_with_the_given_budget(self):
+        run = TrainingConfig(minutes=60, batch=16)
+        self.assertEqual(self.bundled(run, "--samples=8"), ["--batch", "16", "--samples=8"])
+
+    def test_a_bundle_cannot_continue_a_run_on_recorded_drives(self):
+        run = TrainingConfig(samples=8, recordings="mine", map="town.osm")
+        with self.assertRaisesRegex(BundleError, "^--recordings: found recorded drives, wanted a"):
+            self.bundled(run)
+        self.assertFalse((self.folder / "bundle").exists())
+
+    def test_a_bundle_that_continues_a_run_says_so(self):
+        config, out = TrainingConfig(samples=8), self.folder / "bundle"
+        torch.save(state_of_weights({}, config.as_dict()), self.folder / "checkpoint.pt")
+        out.mkdir()
+        copy_weights(config, self.folder, out)
+        self.assertTrue((out / CONTINUES).is_file())
+        self.assertTrue((out / "run" / "checkpoint.pt").is_file())
+
+    def test_a_bundle_that_fails_leaves_no_folder(self):
+        arguments = argparse.Namespace(init=None, run=None, photos=None)
+        out = self.folder / "bundle"
+        for error in (BundleError("too large"), KeyboardInterrupt()):
+            with unittest.mock.patch("training.bundle.copy_sampler", side_effect=error):
+                with self.assertRaises(type(error)):
+                    make(arguments, ["--samples", "8"], out)
+            self.assertFalse(out.exists())
+
     def test_a_given_budget_replaces_that_of_the_bundle(self):
         own = ["--minutes", "60", "--batch", "32", "--samples=8"]
         self.assertEqual(without_budget(own), ["--batch", "32"])
+
+
+class RunFolder(unittest.TestCase):
+    """What `train` of a bundle resumes."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.bundle, self.other = Path(folder.name) / "bundle", Path(folder.name) / "other"
+        for run in (self.bundle / "run", self.other):
+            run.mkdir(parents=True)
+        (self.bundle / "options.json").write_text("[]")
+        patched = unittest.mock.patch("training.bundle_train.FOLDER", self.bundle)
+        patched.start()
+        self.addCleanup(patched.stop)
+
+    def test_train_resumes_the_run_of_its_option(self):
+        elsewhere = (["--run", str(self.other)], [f"--run={self.other}"])
+        (self.bundle / "run" / "checkpoint.pt").touch()
+        self.assertIn("--resume", options([]))
+        for given in elsewhere:
+            self.assertNotIn("--resume", options(given))
+        (self.other / "checkpoint.pt").touch()
+        for given in elsewhere:
+            self.assertIn("--resume", options(given))
+
+    def test_train_does_not_start_anew_in_place_of_the_run_that_came_with_it(self):
+        (self.bundle / CONTINUES).touch()
+        (self.bundle / "run" / "checkpoint.pt").touch()
+        self.assertIn("--resume", options([]))
+        message = f"^train: --run: found no checkpoint.pt in {self.other}, wanted that of the run"
+        with self.assertRaisesRegex(SystemExit, message):
+            options(["--run", str(self.other)])
+        (self.other / "checkpoint.pt").touch()
+        self.assertIn("--resume", options(["--run", str(self.other)]))
 
 
 class Sampler(unittest.TestCase):

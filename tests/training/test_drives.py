@@ -18,15 +18,19 @@ from training.config import TrainingConfig
 from training.data import DriveStream, MixedStream
 from training.distributed import Share
 from training.drive_report import figures_table, report
+from training.errors import TrainingError
 from training.evaluate import AXES, CLASSES
 from training.options import parse_config
-from training.sampler_process import Drives, SamplerError
+from training.sampler_process import DriveFacts, Drives, SamplerError
 from training.sources import drive_batches, training_stream, validation_set
 
 ROOT = Path(__file__).parent.parent.parent
 RIG = ROOT / "config/rig_demo.yaml"
 CAMERAS = ("front_left", "front", "front_right", "back_left", "back", "back_right")
 LENGTH_M, SPACING_M = 1000, 10
+# The middle of a row of squares (training/drives/drive_parts.h). The fourth square from the map's
+# origin is held back, the seventh is for calibration.
+NORTH_M = 50
 STEP_NS = 200_000_000
 
 
@@ -39,7 +43,7 @@ def write_drive(folder: Path, length_m: int = LENGTH_M) -> None:
         Image.new("RGB", size, (40 + number, 90, 90)).save(folder / camera / "0.png")
         lines = [f"{i} {(i + 1) * STEP_NS} 0.png" for i in range(frames)]
         (folder / camera / "frames.txt").write_text("\n".join(lines) + "\n")
-    poses = [f"{i * STEP_NS},{i * SPACING_M},0,0" for i in range(frames + 3)]
+    poses = [f"{i * STEP_NS},{i * SPACING_M},{NORTH_M},0" for i in range(frames + 3)]
     (folder / "reference.csv").write_text("time_ns,x_m,y_m,yaw_deg\n" + "\n".join(poses) + "\n")
 
 
@@ -55,7 +59,7 @@ def write_map(path: Path) -> None:
             ids.append(1 + len(nodes))
             nodes.append(
                 f'<node id="{ids[-1]}" lat="0" lon="0"><tag k="local_x" v="{x_m}"/>'
-                f'<tag k="local_y" v="{y_m}"/></node>'
+                f'<tag k="local_y" v="{NORTH_M + y_m}"/></node>'
             )
         refs = "".join(f'<nd ref="{i}"/>' for i in ids)
         subtype = '<tag k="subtype" v="dashed"/>' if kind == "line_thin" else ""
@@ -99,7 +103,7 @@ class DrivesTest(unittest.TestCase):
         index.write_text("\n".join(lines) + "\n")
         (self.root / "drive" / camera / "bad.png").write_bytes(b"no picture")
 
-    def test_every_fourth_square_is_set_aside(self) -> None:
+    def test_two_of_its_squares_are_set_aside(self) -> None:
         samples = self.drives.facts().samples
         self.assertEqual(list(samples), ["training", "calibration", "held-back"])
         # Of 1,000 m, 100 are held back and 100 for calibration; 36 on both sides are left out.
@@ -112,11 +116,18 @@ class DrivesTest(unittest.TestCase):
                 sum(map(len, drive_batches(self.drives, part, 999, 1))), samples[part]
             )
 
-    def test_drives_through_too_few_squares_are_refused_before_training(self) -> None:
+    def test_drives_without_a_part_are_refused_before_training(self) -> None:
         write_drive(self.root / "short", 500)
         config = dataclasses.replace(self.config(0.0), recordings=str(self.root / "short"))
-        with self.assertRaisesRegex(SamplerError, "ended with status 2"):
+        with self.assertRaisesRegex(TrainingError, "found no sample of the part calibration"):
             validation_set(config)
+
+    def test_drives_without_a_held_back_sample_are_refused_before_training(self) -> None:
+        samples = {"training": 66, "calibration": 10, "held-back": 0}
+        facts = DriveFacts(samples, (200.0, 600.0), (1.2, 3.1))
+        with patch("training.sampler_process.Drives.facts", return_value=facts):
+            with self.assertRaisesRegex(TrainingError, "found no sample of the part held-back"):
+                validation_set(self.config(0.0))
 
     def test_the_facts_have_the_ranges_of_the_cameras(self) -> None:
         cameras = yaml.safe_load(RIG.read_text())["cameras"].values()
@@ -146,11 +157,11 @@ class DrivesTest(unittest.TestCase):
         self.assertTrue(torch.equal(torch.stack(parts, 1).flatten(0, 1), corrections))
 
     def test_a_bad_sample_ends_the_run_or_is_replaced(self) -> None:
-        self.spoil("back", 70)
+        self.spoil("back", 90)
         with self.assertRaisesRegex(SamplerError, "bevloc_drive_sampler: ended with status 1"):
             self.stream().next(60)
         good = {bytes(row.numpy()) for row in self.stream_that_skips().next(60).raster_truth}
-        self.assertLess(len(good), 20)  # of 66 samples, 49 are bad
+        self.assertLess(len(good), 20)  # of 66 samples, 56 are bad
 
     def test_a_run_that_skips_bad_samples_can_be_resumed(self) -> None:
         clean = self.stream().next(12)

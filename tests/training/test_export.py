@@ -16,7 +16,8 @@ from onnx import numpy_helper
 
 from tests.training.synthetic import SyntheticStream
 from tests.training.untrained import untrained_network
-from training import exported_network
+from training import export_onnx, exported_network
+from training.checkpoint import state_of_weights
 from training.config import TrainingConfig
 from training.data import Batch, view_table
 from training.errors import TrainingError
@@ -278,6 +279,23 @@ class Sources(unittest.TestCase):
         with patch("training.export_onnx.calibration_batches", side_effect=[["a"], ["b"]]) as read:
             self.assertEqual(fitting_batches(None, "street", 8, 2), (["a"], ["b"]))
         self.assertEqual([call.args for call in read.call_args_list], [(8, 2, "street"), (8, 2)])
+
+    def test_a_network_with_unusable_scales_leaves_the_shipped_model(self):
+        batch = SyntheticStream(3).next(1)
+        batch.correction[:] = torch.tensor([50.0, 50.0, 1.0])  # no match finds this place
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            checkpoint, shipped = folder / "checkpoint.pt", folder / "models/nano.onnx"
+            torch.save(state_of_weights(untrained_network().state_dict(), {}), checkpoint)
+            shipped.parent.mkdir()
+            shipped.write_text("shipped")
+            arguments = ["export", str(checkpoint), str(shipped.parent)]
+            with patch("training.export_onnx.fitting_batches", return_value=([batch], [batch])), \
+                    patch("training.export_onnx.fit_scales"), patch("sys.argv", arguments):
+                with self.assertRaisesRegex(TrainingError, "factor of the .*: found .*, wanted"):
+                    export_onnx.main()
+            self.assertEqual(shipped.read_text(), "shipped")
+            self.assertEqual(list(shipped.parent.iterdir()), [shipped])
 
     def test_a_network_without_export_is_refused_before_training(self):
         def name_of(*options: str) -> str:

@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from training.data import Batch
+from training.errors import TrainingError
 from training.fit_scales import TYPICAL_SCORE, fit_scales, fit_score_scale, fit_sigma_scale
 from training.losses import pose_losses
 from training.runtime import NativeSolution
@@ -80,6 +81,29 @@ class FitScales(unittest.TestCase):
             infer, lambda *_: solution, [features_batch(truth, truth, truth)]
         )
         self.assertAlmostEqual(scale, TYPICAL_SCORE / 0.2, places=5)
+
+    def fitted_score(self, error_m: float, score: float) -> float:
+        """The factor for four matches that are `error_m` off along the road."""
+        truth, found = torch.zeros(4, 3), torch.zeros(4, 3)
+        found[:, 0] = error_m
+        unused = Posterior(NOTHING, NOTHING, NOTHING)
+        solution = NativeSolution(found, torch.ones_like(found), unused, torch.full((4,), score))
+        return fit_score_scale(infer, lambda *_: solution, [features_batch(truth, truth, truth)])
+
+    def test_a_score_factor_that_the_daemon_would_refuse_is_an_error(self):
+        with self.assertRaisesRegex(TrainingError, "factor of the score: found nan, wanted 0.1 to"):
+            self.fitted_score(error_m=2.0, score=0.3)
+        for score in (0.0, 0.01, 4.0):
+            with self.assertRaisesRegex(TrainingError, "factor of the score: found .*, wanted 0.1"):
+                self.fitted_score(error_m=0.0, score=score)
+        self.assertAlmostEqual(self.fitted_score(error_m=0.0, score=0.32), 1.0, places=5)
+
+    def test_a_sigma_factor_that_the_daemon_would_refuse_is_an_error(self):
+        truth = torch.full((4, 3), 50.0)
+        unused = Posterior(NOTHING, NOTHING, NOTHING)
+        solution = Solution(torch.zeros(4, 3), torch.ones(4, 3), unused)
+        with self.assertRaisesRegex(TrainingError, "factor of the sigma: found 50, wanted 0.1 to"):
+            fit_sigma_scale(infer, lambda *_: solution, [features_batch(truth, truth, truth)])
 
 
 if __name__ == "__main__":

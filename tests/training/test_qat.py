@@ -14,10 +14,11 @@ import torch
 
 from tests.training.synthetic import SyntheticStream, gradient_of
 from tests.training.untrained import untrained_network
+from training import quantization_report
 from training.checkpoint import load_network, state_of_weights
 from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED, QAT_SEEDS, USUAL_SEEDS
 from training.data import Batch, SamplerStream
-from training.errors import NotFiniteError
+from training.errors import NotFiniteError, TrainingError
 from training.export_onnx import quantization_of
 from training.fake_quantization import FakeQuantized
 from training.graph import folded_convolutions
@@ -128,6 +129,18 @@ class Program(unittest.TestCase):
                 self.run_main(str(path), "--run", folder, "--samples=1", "--batch=1")
         self.assertEqual(calibration.call_args.args[2], "strong")
         self.assertEqual(stream.call_args.kwargs["nuisances"], "strong")
+
+    def test_refuses_runs_on_real_data(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "checkpoint.pt"
+            for option, name in (("recordings", "recorded drives"), ("nuscenes", "nuScenes")):
+                torch.save(state_of_weights({}, {option: "mine"}), path)
+                message = f"{path}: found a run on {name} .mine., wanted one on the simulator"
+                with self.assertRaisesRegex(TrainingError, message):
+                    self.run_main(str(path), "--run", folder)
+                with self.assertRaisesRegex(TrainingError, message):
+                    with patch.object(sys, "argv", ["report", str(path)]):
+                        quantization_report.main()
 
     def test_refuses_less_than_a_batch(self):
         said = io.StringIO()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import unittest
+from pathlib import Path
 
 import torch
 
@@ -11,7 +12,7 @@ from tests.training.synthetic import SyntheticStream
 from tests.training.untrained import untrained_network
 from training.layer_errors import LayerError, layer_errors
 from training.quantization_report import (
-    SOLVERS,
+    BEGIN,
     layer_table,
     pose_table,
 )
@@ -19,6 +20,14 @@ from training.quantize import Quantization, quantize
 
 # A layer of the image branch, whose scale the tests make too small, and one of the map branch.
 SPOILT, OF_THE_MAP = "trunk.stage8.1.first", "map_encoder.layers.1"
+
+EXACT = torch.tensor([[1.0, 2.0, 3.0]] * 2)
+DOCUMENT = Path(__file__).resolve().parents[2] / "docs/quantization.md"
+
+
+def titles(tables: str) -> list[str]:
+    """The first column of a Markdown table."""
+    return [line.split("|")[1].strip() for line in tables.splitlines() if line.startswith("|")]
 
 
 class LayerErrors(unittest.TestCase):
@@ -77,11 +86,14 @@ class Document(unittest.TestCase):
         )
 
     def test_the_pose_table_pairs_the_samples(self):
-        exact = {kind: torch.tensor([[1.0, 2.0, 3.0]] * 2) for kind in SOLVERS}
-        rounded = {kind: error + torch.tensor([0.5, 0.0, -1.0]) for kind, error in exact.items()}
-        rows = pose_table(exact, rounded).splitlines()
+        rows = pose_table(EXACT, EXACT + torch.tensor([0.5, 0.0, -1.0])).splitlines()
         self.assertEqual(rows[2], "| block, x (m) | 1.0000 | 1.5000 | +0.5000 ± 0.0000 |")
-        self.assertEqual(len(rows), 8)
+        self.assertEqual(len(rows), 5)
+
+    def test_the_document_has_the_rows_that_the_program_writes(self):
+        text = DOCUMENT.read_text(encoding="utf-8")
+        poses = text.partition(BEGIN)[2].partition("\nLayers, ")[0]
+        self.assertEqual(titles(poses), titles(pose_table(EXACT, EXACT)))
 
 
 if __name__ == "__main__":

@@ -5,8 +5,8 @@ import dataclasses
 import io
 import tempfile
 import unittest
-import unittest.mock
 from pathlib import Path
+from unittest.mock import patch
 
 import torch
 
@@ -19,7 +19,7 @@ from training.options import parse_config
 from training.precision import choose_precision, cpu_flags
 from training.progress import Progress
 
-CPU, CUDA = torch.device("cpu"), torch.device("cuda")
+CPU = torch.device("cpu")
 
 
 class Options(unittest.TestCase):
@@ -56,6 +56,25 @@ class Options(unittest.TestCase):
         self.assertIn("found 0, wanted at least 1", self.refusal(*budget, "--log-steps", "0"))
         self.assertIn("wanted less than 2^63", self.refusal(*budget, "--seed", str(2**64)))
 
+    def test_runs_with_different_seeds_share_no_scene(self):
+        budget = ("--samples", "8")
+        for seed in (2**32 + 1, 2**32 + 2**29):
+            said = self.refusal(*budget, f"--seed={seed}")
+            self.assertIn(f"--seed: found {seed}, wanted a multiple of {2**30}", said)
+        for factor in (4, 5, 6, 56):
+            accepted = parse_config([*budget, f"--seed={factor * 2**30}"], "")
+            self.assertEqual(accepted.seed, factor * 2**30)
+
+    def test_more_processes_need_seeds_further_apart(self):
+        budget = ("--samples", "8", "--batch", "240")
+        for processes, apart in ((3, 2**32), (8, 2**31), (16, 2**32), (5, 2**33)):
+            said = self.refusal(*budget, f"--seed={2**33 + 2**30}", processes=processes)
+            self.assertIn(f"wanted a multiple of {apart}", said)
+            parse_config([*budget, f"--seed={2**33}"], "", processes)
+
+    def test_the_seed_of_nuscenes_is_no_scene(self):
+        parse_config(["--samples", "8", "--nuscenes", "tree", f"--seed={2**32 + 1}"], "")
+
     def test_each_number_has_a_range(self):
         for field in dataclasses.fields(TrainingConfig):
             kind = type(field.default)
@@ -69,15 +88,26 @@ class Options(unittest.TestCase):
 
 class Precisions(unittest.TestCase):
     def test_auto_follows_the_processor(self):
+        self.addCleanup(torch.backends.mkldnn.set_flags, torch.backends.mkldnn.set_flags(True)[0])
         self.assertTrue(choose_precision("auto", CPU, {"avx2", "avx512_bf16"}).bfloat16)
         self.assertTrue(choose_precision("auto", CPU, {"amx_bf16"}).bfloat16)
         chosen = choose_precision("auto", CPU, {"avx2"})
         self.assertEqual(str(chosen), "float32 (the CPU has neither amx_bf16 nor avx512_bf16)")
 
     def test_auto_follows_the_gpu(self):
-        for able in (True, False):
-            with unittest.mock.patch("torch.cuda.is_bf16_supported", return_value=able):
-                self.assertEqual(choose_precision("auto", CUDA, set()).bfloat16, able)
+        second = torch.device("cuda", 1)
+        for capability, able in (((7, 5), False), ((8, 0), True), ((9, 0), True)):
+            with patch("torch.cuda.get_device_capability", return_value=capability) as asked, \
+                    patch("torch.cuda.is_bf16_supported", return_value=True), \
+                    patch("torch.version.hip", None):
+                self.assertEqual(choose_precision("auto", second, set()).bfloat16, able)
+            asked.assert_called_once_with(second)
+
+    def test_auto_needs_onednn_on_the_processor(self):
+        self.addCleanup(torch.backends.mkldnn.set_flags, torch.backends.mkldnn.set_flags(False)[0])
+        chosen = choose_precision("auto", CPU, {"amx_bf16"})
+        self.assertFalse(chosen.bfloat16)
+        self.assertIn("oneDNN", str(chosen))
 
     def test_an_explicit_choice_is_kept(self):
         self.assertTrue(choose_precision("bfloat16", CPU, set()).bfloat16)

@@ -4,7 +4,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from training.run_table import append_row
+from training.run_table import TABLES, append_row, drop_rows_after
 
 
 class AppendRow(unittest.TestCase):
@@ -34,6 +34,23 @@ class AppendRow(unittest.TestCase):
     def test_an_empty_file_gets_a_header(self):
         self.path.write_text("")
         self.assertEqual(self.append({"step": 1}), ["step", "1"])
+
+
+class DropRows(unittest.TestCase):
+    def test_rows_of_later_samples_are_removed_from_both_tables(self):
+        with tempfile.TemporaryDirectory() as folder:
+            paths = [Path(folder) / name for name in TABLES]
+            for path in paths:
+                for samples in (8, 16, 24):
+                    append_row(path, {"samples": samples, "loss": 0.5})
+            drop_rows_after(Path(folder), 16)
+            for path in paths:
+                self.assertEqual(path.read_text().splitlines(), ["samples,loss", "8,0.5", "16,0.5"])
+
+    def test_a_new_run_has_no_table(self):
+        with tempfile.TemporaryDirectory() as folder:
+            drop_rows_after(Path(folder), 0)
+            self.assertEqual(list(Path(folder).iterdir()), [])
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import torch
 
 from tests.training.synthetic import SyntheticStream
 from training.data import Batch, view_table
+from training.errors import TrainingError
 from training.evaluate import float_inference
 from training.export_onnx import build_model
 from training.graph import folded_convolutions
@@ -54,11 +55,11 @@ class RunTime(unittest.TestCase):
         cls.network = native(cls.net)
 
     def test_a_missing_model_is_refused_with_its_name(self):
-        with self.assertRaisesRegex(ValueError, "absent.onnx"):
+        with self.assertRaisesRegex(TrainingError, "absent.onnx"):
             NativeNetwork(Path("absent.onnx"))
 
     def test_an_unknown_solver_is_refused(self):
-        with self.assertRaisesRegex(ValueError, "magic"):
+        with self.assertRaisesRegex(TrainingError, "magic"):
             NativeSolver(self.network, "magic")
 
     @torch.no_grad()

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import onnx
 import torch
+from onnx import helper
 from torch import Tensor
 
 from tests.training.synthetic import SyntheticStream
@@ -17,7 +18,7 @@ from training.errors import CheckpointError
 from training.export_onnx import build_model
 from training.graph import folded_convolutions
 from training.model import real_images, real_raster
-from training.models.config import PRESETS
+from training.models.config import PRESETS, network_config
 from training.models.layers import ConvBn, running_statistics
 from training.models.network import BevNetwork
 from training.onnx_graph import FloatOnnxBackend
@@ -29,6 +30,10 @@ def outputs(net: BevNetwork, batch: Batch) -> tuple[Tensor, ...]:
         return net(
             real_images(batch.images), batch.index, batch.weight, real_raster(batch.raster_prior)
         )
+
+
+def properties_of(model: onnx.ModelProto) -> dict[str, str]:
+    return {entry.key: entry.value for entry in model.metadata_props}
 
 
 def largest(tensor: Tensor) -> float:
@@ -74,10 +79,24 @@ class ModelFile(unittest.TestCase):
             outputs(net.train(), self.batch)[0], before, rtol=0.02, atol=0.02 * largest(before)
         )
 
+    def rename(self, network: str) -> None:
+        """Lets the file say that it holds this network."""
+        model = onnx.load(str(self.file))
+        helper.set_model_props(model, {**properties_of(model), "bevloc.model": network})
+        onnx.save(model, str(self.file))
+
+    def test_a_file_with_another_view_transform_is_refused(self):
+        """The networks differ in parts that a model file does not hold, so all its weights fit."""
+        for view in ("kernel", "dense"):
+            net = BevNetwork(network_config("nano", view))
+            message = f"holds the network 'nano', wanted '{net.config.name}'"
+            with self.assertRaisesRegex(CheckpointError, message):
+                start_with(net, self.file, lambda: [])
+
     def test_other_files_are_refused_with_what_is_wrong(self):
-        small = BevNetwork(PRESETS["small"])
+        self.rename("small")
         with self.assertRaisesRegex(CheckpointError, "trunk.stem.weight: found .*, wanted float32"):
-            start_with(small, self.file, lambda: [])
+            start_with(BevNetwork(PRESETS["small"]), self.file, lambda: [])
         self.file.write_bytes(b"no model")
         with self.assertRaisesRegex(CheckpointError, "unreadable as a model"):
             self.start()

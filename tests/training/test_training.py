@@ -1,5 +1,6 @@
 """Tests the training loop on a synthetic stream."""
 
+import csv
 import io
 import math
 import tempfile
@@ -21,6 +22,7 @@ from training.models import PRESETS, BevNetwork
 from training.models.layers import bias_of
 from training.models.view_lut import gather_views
 from training.optimiser import learning_rate
+from training.run_table import TABLES, append_row
 from training.train import Trainer, noise_seed
 
 
@@ -85,6 +87,24 @@ class Resuming(TemporaryRuns):
         self.assertTrue(resumed.run())
         self.assertTrue(torch.equal(weights(resumed.net), weights(uninterrupted.net)))
         self.assertTrue(torch.equal(weights(resumed.average), weights(uninterrupted.average)))
+
+    def samples_of(self, table: Path) -> list[int]:
+        with table.open(newline="") as file:
+            return [int(row["samples"]) for row in csv.DictReader(file)]
+
+    def test_a_run_that_was_killed_repeats_no_row(self):
+        folder = self.folder()
+        curves, validation = (Path(folder) / name for name in TABLES)
+        with redirect_stdout(io.StringIO()):
+            trainer(folder, log_steps=1, stop_after_minutes=1e-9).run()
+            # What the run wrote after its last checkpoint.
+            losses = curves.read_text().splitlines()[-1].split(",")[2:]
+            curves.write_text(curves.read_text() + ",".join(["2", "4", *losses]) + "\n")
+            for samples in (2, 4):
+                append_row(validation, {"samples": samples, "joint_x_mae": 0.5})
+            trainer(folder, log_steps=1, resume=True).run()
+        self.assertEqual(self.samples_of(curves), [2, 4, 6, 8])
+        self.assertEqual(self.samples_of(validation), [2])
 
     def dropout(self, folder: str, **options: Any) -> list[float]:
         """What each step of a run draws where the network drops values."""

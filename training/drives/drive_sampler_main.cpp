@@ -157,9 +157,9 @@ int write_samples(const Options& options, DriveSet& set, DriveSampleMaker& maker
   const std::vector<SamplePlace>& places = set.places(options.part);
   if (places.empty()) {
     fmt::print(stderr,
-               "{}: found no sample of this part, wanted some; the drives need reference poses and "
-               "at least {} squares of {:g} m\n",
-               options.recordings, DriveSet::kFewestSquares, DriveSet::kSquare_m);
+               "{}: found no sample of this part, wanted some; give drives with reference poses "
+               "through more squares of {:g} m\n",
+               options.recordings, bevloc::drives::kSquare_m);
     return bevloc::kBadInput;
   }
   if (!bevloc::write_output(bevloc::sample_stream_header(), kProgram)) return kExitBadSamples;

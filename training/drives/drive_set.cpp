@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
+#include <string>
 #include <utility>
 
 #include "common/mcap/reader.h"
@@ -15,21 +15,6 @@ namespace bevloc::drives {
 namespace {
 
 namespace fs = std::filesystem;
-using Square = std::pair<long, long>;
-/// The squares that are not for training.
-using SetAside = std::map<Square, DrivePart>;
-
-Square square_at(const Eigen::Vector2d& place) {
-  return {std::lround(std::floor(place.x() / DriveSet::kSquare_m)),
-          std::lround(std::floor(place.y() / DriveSet::kSquare_m))};
-}
-
-double distance_to(const Square& square, const Eigen::Vector2d& place) {
-  const Eigen::Vector2d low(DriveSet::kSquare_m * static_cast<double>(square.first),
-                            DriveSet::kSquare_m * static_cast<double>(square.second));
-  const Eigen::Vector2d high = low.array() + DriveSet::kSquare_m;
-  return (place - place.cwiseMax(low).cwiseMin(high)).norm();
-}
 
 bool is_drive_of_pictures(const fs::path& folder) {
   return std::ranges::any_of(kCameraNames, [&](std::string_view camera) {
@@ -147,16 +132,6 @@ std::vector<std::pair<size_t, Se2>> spaced_framesets(const DriveIndex& drive, Le
   return chosen;
 }
 
-/// The part of a place; none if its sample would show a place of a later part.
-std::optional<DrivePart> part_at(const Eigen::Vector2d& place, const SetAside& set_aside) {
-  const auto own = set_aside.find(square_at(place));
-  const DrivePart part = own == set_aside.end() ? DrivePart::kTraining : own->second;
-  for (const auto& [square, other] : set_aside) {
-    if (other > part && distance_to(square, place) < DriveSet::kSeen_m) return std::nullopt;
-  }
-  return part;
-}
-
 }  // namespace
 
 Result<DriveSet> DriveSet::open(const DriveSetOptions& options) {
@@ -181,22 +156,9 @@ Result<DriveSet> DriveSet::open(const DriveSetOptions& options) {
 }
 
 void DriveSet::choose_samples() {
-  std::vector<std::vector<std::pair<size_t, Se2>>> chosen;
-  std::set<Square> visited;
-  SetAside set_aside;
-  for (const auto& drive : drives_) {
-    chosen.push_back(spaced_framesets(drive->index(), left_out_));
-    for (const auto& [frameset, pose] : chosen.back()) {
-      const Square square = square_at(pose.translation());
-      if (!visited.insert(square).second) continue;
-      if (visited.size() % kSetAsideEvery != 0) continue;
-      const bool holds_back = set_aside.size() % 2 == 0;
-      set_aside.emplace(square, holds_back ? DrivePart::kHeldBack : DrivePart::kCalibration);
-    }
-  }
-  for (size_t drive = 0; drive < chosen.size(); ++drive) {
-    for (const auto& [frameset, pose] : chosen[drive]) {
-      if (const auto part = part_at(pose.translation(), set_aside)) {
+  for (size_t drive = 0; drive < drives_.size(); ++drive) {
+    for (const auto& [frameset, pose] : spaced_framesets(drives_[drive]->index(), left_out_)) {
+      if (const auto part = part_at(pose.translation())) {
         places_[static_cast<size_t>(*part)].push_back({drive, frameset});
       } else {
         ++left_out_.beside_other_part;

@@ -5,30 +5,14 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "pipeline/map/hd_map.h"
+#include "training/drives/drive_parts.h"
 #include "training/drives/mcap_drive.h"
 #include "training/drives/recorded_drive.h"
 
 namespace bevloc::drives {
-
-/// Which places the samples are from. No sample shows a place of a part that comes later in this
-/// list.
-enum class DrivePart : uint8_t {
-  kTraining,     ///< the network learns from them
-  kCalibration,  ///< for the ranges of int8, the scales of the solvers and the early stop
-  kHeldBack,     ///< for the figures of a report
-};
-
-/// All parts with their names on the command line.
-inline constexpr std::array<std::pair<std::string_view, DrivePart>, 3> kDriveParts{
-    {{"training", DrivePart::kTraining},
-     {"calibration", DrivePart::kCalibration},
-     {"held-back", DrivePart::kHeldBack}}};
 
 struct DriveSetOptions {
   std::filesystem::path folder;
@@ -60,21 +44,13 @@ struct CameraRanges {
 /// Finds the drives of a folder: the folder itself and each folder in it. A folder with MCAP files
 /// has one drive for each run of the daemon; one with pictures (FolderDrive) is one drive.
 ///
-/// The map is divided into squares of kSquare_m, which are numbered in the order in which the
-/// drives reach them. Every kSetAsideEvery-th one is set aside: the first is held back, the second
-/// is for calibration, and so on in turn. So a place that is driven through twice is in one part
-/// only.
+/// The place of a sample gives its part (drive_parts.h). So a place that is driven through twice is
+/// in one part only.
 class DriveSet {
  public:
   /// Two samples of a drive differ by at least one of these.
   static constexpr double kLeastDistance_m = 1.0;
   static constexpr double kLeastTurn_rad = radians(5.0);
-  static constexpr double kSquare_m = 100.0;
-  static constexpr int kSetAsideEvery = 4;
-  static constexpr int kFewestSquares = 2 * kSetAsideEvery;  ///< with fewer, a part has no sample
-  /// How far from its reference pose a sample shows the map, at any heading: 30 m along and 15 m
-  /// across (kRasterGrid) from a prior that is up to 2 m and 1 m off (sim::random_correction()).
-  static constexpr double kSeen_m = 36.0;
 
   /// Fails if there is no drive, or if a drive cannot be opened.
   static Result<DriveSet> open(const DriveSetOptions& options);
