@@ -34,12 +34,16 @@ if(NOT BEVLOC_SIMULATION)
   install(FILES systemd/network/80-bevloc-can.link systemd/network/80-bevloc-can.network
                 systemd/udev/60-bevloc.rules systemd/live.conf systemd/gnss.conf systemd/clock.conf
           DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT bevloc)
-  # The pages link to each other, so they lie in the folders of the source tree.
+  # The pages link to each other, so they lie in the folders of the source tree. script/try-packages
+  # checks the links.
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc
           FILES_MATCHING PATTERN "*.md" PATTERN "*.json" PATTERN "images" EXCLUDE)
   install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md
           DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT bevloc)
-  install(FILES models/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models COMPONENT bevloc)
+  install(FILES models/README.md models/nano_results.json
+          DESTINATION ${CMAKE_INSTALL_DOCDIR}/models COMPONENT bevloc)
+  install(FILES training/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/training COMPONENT bevloc)
+  install(FILES can/bevloc.dbc DESTINATION ${CMAKE_INSTALL_DOCDIR}/can COMPONENT bevloc)
   install(DIRECTORY config/ DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT bevloc
           FILES_MATCHING PATTERN "rig_*.yaml")
   install(FILES models/nano.onnx models/small-lut.onnx

@@ -29,6 +29,8 @@ _CLOCKS = """
 """
 _TICKS_PER_S = 1e9
 _DRIVE_TIMEOUT_S = 900.0
+# A minute in the guest can take ten on a busy host.
+_UPDATE_TIMEOUT_S = 1800.0
 _DRIVE_ENDED = "[ $(systemctl show lab-vehicle --value -p ActiveState) = inactive ]"
 # Names of files that were there before this start.
 _SETTLED = """
@@ -184,7 +186,7 @@ def _uri(repository: str) -> str:
 
 def _install(machine: Machine, repository: str) -> None:
     _mount_repositories(machine)
-    print(machine.agent.check(f"bevloc-update {_uri(repository)}"), flush=True)
+    print(machine.agent.check(f"bevloc-update {_uri(repository)}", _UPDATE_TIMEOUT_S), flush=True)
     _refuse(machine, repository, "waits for a restart")
 
 
@@ -218,7 +220,7 @@ def _refuse_unreadable(machine: Machine) -> None:
 def _refuse(machine: Machine, repository: str, reason: str) -> None:
     """An update that must not be made is refused for this reason, and leaves all as it is."""
     before = machine.agent.check(_STATE)
-    reply = machine.agent.run(f"bevloc-update {_uri(repository)}")
+    reply = machine.agent.run(f"bevloc-update {_uri(repository)}", _UPDATE_TIMEOUT_S)
     if reply.status == 0 or reason not in reply.output:
         raise LabError(f"bevloc-update {repository}: found '{reply.output}', wanted '{reason}'")
     if (after := machine.agent.check(_STATE)) != before:
@@ -247,7 +249,8 @@ def _await_verdict(machine: Machine) -> int:
         try:
             machine.agent.check(
                 "until systemctl is-active --quiet bevloc-healthy; do sleep 1; done; "
-                "while ls /efi/loader/entries/*+[1-9]*.conf 2>/dev/null; do sleep 1; done"
+                "while ls /efi/loader/entries/*+[1-9]*.conf 2>/dev/null; do sleep 1; done",
+                _UPDATE_TIMEOUT_S,
             )
             return starts
         except GuestRestarted:
