@@ -10,9 +10,9 @@ namespace bevloc {
 /// is right. Returns whether the latest decoding of `jpeg` failed only because of such a warning.
 /// `decompressor` is the tjhandle.
 ///
-/// libjpeg tells its first warning only. So this function checks that the restart markers are
-/// complete and in order, and that the end marker is there. Damage between two restart markers is
-/// not found in an image with such bytes.
+/// libjpeg reports only its first warning, so there may be damage after the extra bytes. Therefore
+/// the function also checks that all restart markers are there and in order, and that the end
+/// marker follows them. It does not find damage between two restart markers.
 bool is_harmless_warning(void* decompressor, std::string_view jpeg);
 
 }  // namespace bevloc

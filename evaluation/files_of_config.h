@@ -8,8 +8,8 @@
 
 namespace bevloc::evaluation {
 
-/// The configuration and the files that it names and that are read. The name of a file that it does
-/// not name is empty.
+/// The file of the configuration, and the files that are read because it names them. An entry is
+/// empty if the configuration names no such file.
 inline std::vector<std::filesystem::path> files_of(const firmware::Config& config) {
   std::vector<std::filesystem::path> files{config.file,         config.rig_file,
                                            config.map_file,     config.model_file,

@@ -22,7 +22,7 @@ struct GnssFix {
   std::chrono::nanoseconds utc{};      ///< the moment of the position, as the time since 1970
 };
 
-/// Whether a receiver can report these values. They may be infinite or no numbers.
+/// Whether a receiver can report these values, which may be those of a damaged file.
 bool is_possible(const GnssFix& fix);
 
 /// The kind of one line.

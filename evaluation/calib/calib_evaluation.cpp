@@ -15,17 +15,14 @@
 namespace bevloc::evaluation {
 namespace {
 
-/// refine_rig() refuses fewer.
-constexpr int kFewestFramesets = 20;
-
 /// Fails if the recording of a drive has too few framesets to be refined.
 Status check_framesets(const SimulatedRecordingOptions& options) {
   const auto framesets = static_cast<int>(std::ceil(options.duration_s / options.interval_s));
-  if (framesets >= kFewestFramesets) return {};
+  if (framesets >= kLeastFramesets) return {};
   return fail(
       "--duration: found {} s with --interval {}, which gives {} framesets, wanted {} or more; "
       "drive longer or shorten the interval",
-      options.duration_s, options.interval_s, framesets, kFewestFramesets);
+      options.duration_s, options.interval_s, framesets, kLeastFramesets);
 }
 
 /// Refines the recording of one drive and judges the result.

@@ -7,7 +7,6 @@
 namespace bevloc::evaluation {
 namespace {
 
-constexpr const char* kIndexOfCamera = "frames.txt";
 constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
 
 bool holds_recordings(const std::filesystem::path& folder) {
@@ -32,7 +31,7 @@ Result<std::unique_ptr<FolderRecording>> FolderRecording::open(const std::filesy
   Frames frames;
   std::vector<std::filesystem::path> files{folder / kReferenceFile};
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    files.push_back(folder / kCameraNames[camera] / kIndexOfCamera);
+    files.push_back(folder / kCameraNames[camera] / drivers::kFrameIndex);
     for (const drivers::RecordedFrame& frame : (*recorded)[camera]) {
       frames.push_back({camera, frame});
       files.push_back(frame.file);

@@ -2,6 +2,7 @@
 
 #include "common/files.h"
 #include "common/image_file.h"
+#include "drivers/camera/replay/replay_camera.h"
 #include "pipeline/map/map_binary.h"
 
 namespace bevloc::evaluation {
@@ -29,7 +30,7 @@ Status PictureRecorder::finish(const ReferenceTrajectory& reference, const HdMap
   if (!status_) return status_;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     if (indexes_[camera].empty()) continue;
-    const auto index = folder_ / kCameraNames[camera] / "frames.txt";
+    const auto index = folder_ / kCameraNames[camera] / drivers::kFrameIndex;
     if (Status s = write_file(index, indexes_[camera]); !s) return s;
   }
   if (Status s = write_file(folder_ / "reference.csv", reference.to_csv()); !s) return s;

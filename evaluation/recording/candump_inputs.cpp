@@ -95,7 +95,7 @@ Result<ReplayInputs> inputs_of_candump(const fs::path& log, const fs::path& imag
       return fail(
           "{}: found pictures from {:.1f} s to {:.1f} s, wanted times of the log, which "
           "goes from {:.1f} s to {:.1f} s",
-          (images / kCameraNames[camera] / "frames.txt").string(),
+          (images / kCameraNames[camera] / drivers::kFrameIndex).string(),
           to_seconds(frames->front().time.time_since_epoch()),
           to_seconds(frames->back().time.time_since_epoch()),
           to_seconds(inputs.begin.time_since_epoch()), to_seconds(inputs.end.time_since_epoch()));

@@ -7,6 +7,7 @@
 #include "common/json_dump.h"
 #include "common/option_checks.h"
 #include "common/output_file.h"
+#include "evaluation/check_outputs.h"
 #include "evaluation/recording/candump_inputs.h"
 #include "evaluation/recording/replay_inputs.h"
 #include "evaluation/recording/track.h"
@@ -100,11 +101,7 @@ Status ReplayCommand::run() const {
 Status ReplayCommand::check_outputs() const {
   std::vector<std::filesystem::path> inputs = files_;
   inputs.insert(inputs.end(), {candump_, overrides_.config, overrides_.model, overrides_.map});
-  Status status;
-  for (const std::filesystem::path& out : {json_file_, can_log(), poses_file()}) {
-    if (status) status = check_output(out, inputs);
-  }
-  return status;
+  return evaluation::check_outputs({json_file_, can_log(), poses_file()}, inputs);
 }
 
 Status ReplayCommand::write_poses(const ReplayOutcome& outcome, Time begin) const {

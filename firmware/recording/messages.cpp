@@ -160,10 +160,11 @@ foxglove::LocationFix fix_message(const RecordedFix& recorded, uint64_t held_ns)
   message.set_frame_id("gnss");
   message.set_latitude(fix.latitude_deg);
   message.set_longitude(fix.longitude_deg);
-  for (const double sigma_m : {fix.sigma_east_m, 0.0, 0.0, 0.0, fix.sigma_north_m}) {
-    message.add_position_covariance(sigma_m * sigma_m);
+  const double east_m2 = fix.sigma_east_m * fix.sigma_east_m;
+  const double north_m2 = fix.sigma_north_m * fix.sigma_north_m;
+  for (const double m2 : {east_m2, 0.0, 0.0, 0.0, north_m2, 0.0, 0.0, 0.0, 0.0}) {
+    message.add_position_covariance(m2);
   }
-  for (int rest = 0; rest < 4; ++rest) message.add_position_covariance(0.0);
   message.set_position_covariance_type(kApproximated);
   message.set_clock_ns(clock_ns(recorded.held.time));
   message.set_clock_sigma_ns(recorded.held.sigma.count());

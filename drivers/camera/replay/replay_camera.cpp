@@ -11,8 +11,6 @@
 namespace bevloc::drivers {
 namespace {
 
-constexpr const char* kIndexName = "frames.txt";
-
 CameraDescription description_of(const ReplayCameraConfig& config) {
   return {config.camera, config.width_px, config.height_px, config.buffers};
 }
@@ -39,7 +37,7 @@ Result<RecordedFrame> parse_line(const std::string& line, const std::string& pla
 }  // namespace
 
 Result<std::vector<RecordedFrame>> load_recording(const std::filesystem::path& directory) {
-  const std::string index = (directory / kIndexName).string();
+  const std::string index = (directory / kFrameIndex).string();
   std::ifstream file(index);
   if (!file) return fail("{}: found no readable file, wanted the index of a recording", index);
   std::vector<RecordedFrame> recording;

@@ -10,9 +10,12 @@
 
 namespace bevloc::drivers {
 
+/// The file in the folder of a camera that lists its images.
+inline constexpr const char* kFrameIndex = "frames.txt";
+
 struct ReplayCameraConfig {
   int camera = 0;  ///< index into kCameraNames
-  /// The folder with PNG or JPEG files and the index `frames.txt`, which has one line `sequence
+  /// The folder with PNG or JPEG files and the index kFrameIndex, which has one line `sequence
   /// time_ns file` per image. Sequence and time must increase. `#` starts a comment.
   std::filesystem::path directory;
   int width_px = 0;

@@ -6,7 +6,6 @@ namespace bevloc {
 namespace {
 
 constexpr double kPaintReach_m = 25.0;
-constexpr int kLeastFramesets = 20;
 
 struct Round {
   double search_rad;  ///< largest distance between where paint and ties are expected and found

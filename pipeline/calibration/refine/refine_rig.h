@@ -9,13 +9,16 @@
 
 namespace bevloc {
 
+/// With fewer framesets, a rig is not refined.
+inline constexpr int kLeastFramesets = 20;
+
 /// Called after each frameset with the number of framesets read so far and the number to be read,
 /// over all rounds.
 using RefinementProgress = std::function<void(int done, int all)>;
 
 /// Reads the recording seven times. It first uses the given rig and a wide search, and later the
 /// rig found so far and a narrower search. Uses framesets at least 1.5 m or 2 degrees apart.
-/// Fails if the recording cannot be read, or if fewer than 20 framesets have reference poses.
+/// Fails if the recording cannot be read, or if fewer than kLeastFramesets have reference poses.
 Result<RigRefinement> refine_rig(const Rig& rig, const MapIndex& map, PictureRecording& recording,
                                  const RefinementOptions& options,
                                  const RefinementProgress& progress = {});

@@ -21,10 +21,12 @@ namespace bevloc {
 /// Heights are those of the elevation profile; without a profile there are none. The place on earth
 /// comes from the header's geoReference (projection.h) with its offset. HdMap::left_out names parts
 /// that are lost because a road contradicts itself, such as gaps in its reference line, and unused
-/// objects with bad numbers. Fails as parse_document() does, on a bad number of an object that a
-/// class table takes, and, unless the options give an origin, with file and line on a geoReference
-/// that cannot be read or from whose meridian the map is too far away. In a report, a remark says
-/// if it is more than 400 km away.
+/// objects with bad numbers. A map whose middle is more than 400 km from the meridian of the
+/// geoReference gets a remark. Fails
+/// - as parse_document() does;
+/// - on a bad number of an object that a class table takes;
+/// - on a geoReference that cannot be read, or from whose meridian the map is too far away, unless
+///   the options give an origin.
 Result<ImportedMap> parse_opendrive(std::string_view text, const std::filesystem::path& file,
                                     const ImportOptions& options);
 
