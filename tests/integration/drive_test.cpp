@@ -12,6 +12,7 @@
 #include "common/image_file.h"
 #include "tests/can/e2e/independent_e2e.h"
 #include "tests/integration/bevlocd_process.h"
+#include "tests/support/demo_rig.h"
 #include "tests/support/png_size.h"
 
 namespace bevloc::test {
@@ -232,7 +233,10 @@ nlohmann::json unsynchronized_drive(bool compensate_motion) {
       std::string("  rate_hz: 10\n  tolerance_ms: 50\n  wait_ms: 100\n  compensate_motion: ") +
           (compensate_motion ? "true\n" : "false\n"));
   write_file(scratch / "config.yaml",
-             with_tolerance + "  exposure_offsets_ms: [0, 50, 20, 35, 10, 45]\n");
+             replaced(with_tolerance, BEVLOC_SOURCE_DIR "/config/rig_demo.yaml",
+                      (scratch / "rig.yaml").string()) +
+                 "  exposure_offsets_ms: [0, 50, 20, 35, 10, 45]\n");
+  write_file(scratch / "rig.yaml", format_rig(small_demo_rig(2)));
   nlohmann::json result =
       drive(scratch, (scratch / "config.yaml").string(), "--seed 901 --duration 10");
   const std::string csv = read_text(scratch / "poses.csv");

@@ -10,12 +10,14 @@
 #include <sched.h>
 
 #include "evaluation/drive/simulated_run.h"
-#include "pipeline/calibration/rig_yaml.h"
 #include "sim/faults/fault_table.h"
+#include "tests/support/demo_rig.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
 namespace {
+
+const Rig kRig = test::small_demo_rig(8);
 
 DriveConfig endless_demo() {
   auto config = load_drive_config(std::string(BEVLOC_SOURCE_DIR) + "/config/demo.yaml");
@@ -30,22 +32,6 @@ DriveConfig endless_demo() {
   return *config;
 }
 
-/// The demo's rig with an eighth of its resolution, which renders fast.
-Rig small_rig(const DriveConfig& config) {
-  auto rig = read_rig(config.rig_file);
-  EXPECT_TRUE(rig) << rig.error().message;
-  for (CameraModel& camera : rig->cameras) {
-    Intrinsics& intrinsics = camera.intrinsics;
-    intrinsics.width_px /= 8;
-    intrinsics.height_px /= 8;
-    for (double* length :
-         {&intrinsics.fx_px, &intrinsics.fy_px, &intrinsics.cx_px, &intrinsics.cy_px}) {
-      *length /= 8.0;
-    }
-  }
-  return *rig;
-}
-
 SimulatedRunOptions quiet_options(const test::TemporaryFolder& folder) {
   SimulatedRunOptions options;
   options.show_progress = false;
@@ -57,7 +43,7 @@ TEST(RealTimeThreadsTest, RunsUntilItHasLocalizedAndEndsEveryThread) {
   const test::TemporaryFolder folder;
   const DriveConfig config = endless_demo();
   const auto report =
-      run_simulation(config, small_rig(config), quiet_options(folder),
+      run_simulation(config, kRig, quiet_options(folder),
                      [](const firmware::ApplianceView& view) { return view.cameras > 0; });
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_GT(report->frames.used, 0U);
@@ -99,12 +85,12 @@ TEST(RealTimeThreadsTest, AreNamedAndRunOnTheConfiguredCpus) {
   const int all = cpus_by_thread().begin()->second;
   std::map<std::string, int> cpus;
   int refusals = 0;
-  const auto report = run_simulation(config, small_rig(config), quiet_options(folder),
-                                     [&](const firmware::ApplianceView& view) {
-                                       cpus = cpus_by_thread();
-                                       refusals = view.realtime_refusals;
-                                       return view.cameras > 0;  // all threads have run
-                                     });
+  const auto report =
+      run_simulation(config, kRig, quiet_options(folder), [&](const firmware::ApplianceView& view) {
+        cpus = cpus_by_thread();
+        refusals = view.realtime_refusals;
+        return view.cameras > 0;  // all threads have run
+      });
   ASSERT_TRUE(report) << report.error().message;
   for (const std::string_view camera : kCameraNames) {
     EXPECT_EQ(cpus["cam-" + std::string(camera)], all) << camera;
@@ -124,8 +110,8 @@ TEST(RealTimeThreadsTest, LockstepAppliesNoRealtimeSettings) {
   config.realtime.can.cpus = {CPU_SETSIZE - 1};
   SimulatedRunOptions options = quiet_options(folder);
   options.fast = true;
-  const auto report = run_simulation(config, small_rig(config), options,
-                                     [](const firmware::ApplianceView&) { return false; });
+  const auto report =
+      run_simulation(config, kRig, options, [](const firmware::ApplianceView&) { return false; });
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->realtime_refusals, 0);
 }
@@ -146,8 +132,8 @@ HangingDrive hanging_drive(sim::FaultKind kind, const std::string& threads) {
   HangingDrive drive;
   int calls = 0;
   int hung_calls = 0;
-  const auto report = run_simulation(
-      config, small_rig(config), quiet_options(folder), [&](const firmware::ApplianceView& view) {
+  const auto report =
+      run_simulation(config, kRig, quiet_options(folder), [&](const firmware::ApplianceView& view) {
         drive.why = view.why;
         hung_calls = view.hung.find(threads) != std::string::npos ? hung_calls + 1 : 0;
         return hung_calls == kSecond || ++calls == 60 * kSecond;
@@ -187,7 +173,7 @@ TEST(RealTimeThreadsTest, StopsWhenAsked) {
   const DriveConfig config = endless_demo();
   int asked = 0;
   const auto report =
-      run_simulation(config, small_rig(config), quiet_options(folder),
+      run_simulation(config, kRig, quiet_options(folder),
                      [&asked](const firmware::ApplianceView&) { return ++asked > 5; });
   EXPECT_TRUE(report) << report.error().message;
 }

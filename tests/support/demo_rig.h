@@ -9,4 +9,15 @@ inline Rig demo_rig() {
   return read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml").value();
 }
 
+/// The rig of the demo with pictures of 1 / `divisor` of the width and height. The simulator draws
+/// them sooner.
+inline Rig small_demo_rig(int divisor) {
+  Rig rig = demo_rig();
+  for (CameraModel& camera : rig.cameras) {
+    const Intrinsics& lens = camera.intrinsics;
+    camera.intrinsics = resized(lens, lens.width_px / divisor, lens.height_px / divisor);
+  }
+  return rig;
+}
+
 }  // namespace bevloc::test

@@ -180,7 +180,8 @@ bool any_motion(const Sample& sample) {
 TEST(Sampler, OnlyStrongNuisancesMoveCamerasInSomeSamples) {
   const Batch usual = sample(0, kSamplesPerWorld, 1, 0.0);
   const Batch strong = sample(0, kSamplesPerWorld, 1, 0.0, sim::strong_nuisances());
-  EXPECT_EQ(strong.records, sample(0, kSamplesPerWorld, 2, 0.0, sim::strong_nuisances()).records);
+  const Batch last_eight = sample(kSamplesPerWorld - 8, 8, 2, 0.0, sim::strong_nuisances());
+  EXPECT_EQ(Records(strong.records.end() - 8, strong.records.end()), last_eight.records);
   size_t moved = 0;
   for (size_t i = 0; i < kSamplesPerWorld; ++i) {
     EXPECT_FALSE(any_motion(usual.samples[i].sample));

@@ -1,12 +1,13 @@
 // Whole short drives in lockstep: pictures from a cache, gaps of the clock, threads that hang.
 #include "evaluation/drive/simulated_run.h"
 
+#include <memory>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
-#include "pipeline/calibration/rig_yaml.h"
 #include "sim/faults/fault_table.h"
+#include "tests/support/demo_rig.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text.h"
 
@@ -25,12 +26,16 @@ class SimulatedRunTest : public testing::Test {
     config_.simulation->seed = 2008;
     config_.simulation->town_seed = 2008;
     config_.simulation->duration_s = 3.0;
-    auto rig = read_rig(config_.rig_file);
-    ASSERT_TRUE(rig) << rig.error().message;
-    rig_ = *rig;
     options_.fast = true;
     options_.show_progress = false;
     options_.out = folder_.path();
+    options_.pictures = shared_pictures();
+  }
+
+  /// The tests' drives see the same, so each picture is drawn once.
+  static std::shared_ptr<drivers::PictureCache> shared_pictures() {
+    static const auto kPictures = std::make_shared<drivers::PictureCache>();
+    return kPictures;
   }
 
   Result<DriveReport> run() const {
@@ -40,12 +45,13 @@ class SimulatedRunTest : public testing::Test {
   std::string log() const { return test::read_text(options_.out / "can.log"); }
 
   DriveConfig config_;
-  Rig rig_;
+  const Rig rig_ = test::small_demo_rig(2);
   const test::TemporaryFolder folder_;
   SimulatedRunOptions options_;
 };
 
 TEST_F(SimulatedRunTest, PicturesFromTheCacheGiveTheSameLog) {
+  options_.pictures = nullptr;
   ASSERT_TRUE(run());
   const std::string without = log();
   options_.pictures = std::make_shared<drivers::PictureCache>();

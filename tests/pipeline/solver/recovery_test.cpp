@@ -74,7 +74,7 @@ struct Bound {
 class Recovery : public testing::TestWithParam<Bound> {};
 
 TEST_P(Recovery, OnTheFeatureGrid) {
-  const Recordings recordings(kFeatureGrid, 16, 24);
+  static const Recordings recordings(kFeatureGrid, 16, 24);
   expect_recovery(GetParam().kind, recordings, GetParam().position_m, GetParam().yaw_deg);
 }
 
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
 class FineRecovery : public testing::TestWithParam<Bound> {};
 
 TEST_P(FineRecovery, OnTheRasterGrid) {
-  const Recordings recordings(kRasterGrid, 4, 4);
+  static const Recordings recordings(kRasterGrid, 4, 4);
   expect_recovery(GetParam().kind, recordings, GetParam().position_m, GetParam().yaw_deg);
 }
 
