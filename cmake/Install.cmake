@@ -56,7 +56,9 @@ endif()
 # their own.
 install(TARGETS bevloc bevlocd DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/bevloc-sim
         COMPONENT bevloc-sim)
-install(FILES config/demo.yaml DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT bevloc-sim)
+install(FILES config/demo.yaml config/demo_own_bus.yaml config/vehicle_demo.dbc
+              config/calibration.yaml
+        DESTINATION ${BEVLOC_DATA_DIR}/config COMPONENT bevloc-sim)
 install(FILES evaluation/campaign/matches.csv
         DESTINATION ${BEVLOC_DATA_DIR}/evaluation/campaign COMPONENT bevloc-sim)
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <set>
+
+#include <fmt/ranges.h>
 
 #include "firmware/recording/topics.h"
 
@@ -20,6 +23,33 @@ tl::unexpected<Error> refuse_short(const std::filesystem::path& path, uintmax_t 
       "{}: found {} bytes without the head of a recording, wanted a recording of bevloc; "
       "was it cut off?",
       path.string(), bytes);
+}
+
+/// Returns log time minus the appliance's clock, which is another one in each run. Returns nothing
+/// if the file is no recording of bevloc.
+std::optional<Duration> clock_offset_of(const mcap::Reader& reader) {
+  const mcap::Metadata* metadata = reader.metadata(firmware::kMetadataName);
+  if (metadata == nullptr) return std::nullopt;
+  const auto text = metadata->values.find(std::string(firmware::kClockOffsetKey));
+  if (text == metadata->values.end()) return std::nullopt;
+  int64_t offset_ns = 0;
+  const std::string& digits = text->second;
+  std::from_chars(digits.data(), digits.data() + digits.size(), offset_ns);
+  return Duration(offset_ns);
+}
+
+/// Names the files of a run in the folder of one of them.
+std::string files_of_run(const std::filesystem::path& one, Duration offset) {
+  std::set<std::string> names;
+  std::error_code unreadable;
+  const std::filesystem::path folder = one.has_parent_path() ? one.parent_path() : ".";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
+    std::error_code ignored;
+    if (!entry.is_regular_file(ignored)) continue;
+    const auto reader = mcap::Reader::open(entry.path());
+    if (reader && clock_offset_of(*reader) == offset) names.insert(entry.path().string());
+  }
+  return fmt::format("{}", fmt::join(names, " "));
 }
 
 }  // namespace
@@ -67,21 +97,16 @@ Status Recording::add(const std::filesystem::path& path) {
   if (!reader->complete() && reader->metadata().empty() && reader->chunks().empty()) {
     return refuse_short(path, size);
   }
-  const mcap::Metadata* metadata = reader->metadata(firmware::kMetadataName);
-  if (metadata == nullptr || !metadata->values.contains(std::string(firmware::kClockOffsetKey))) {
+  const std::optional<Duration> offset = clock_offset_of(*reader);
+  if (!offset) {
     return fail("{}: found an MCAP file of another program, wanted a recording of bevloc",
                 path.string());
   }
-  int64_t offset_ns = 0;
-  const std::string& text = metadata->values.at(std::string(firmware::kClockOffsetKey));
-  std::from_chars(text.data(), text.data() + text.size(), offset_ns);
-  if (!readers_.empty() && Duration(offset_ns) != offset_) {
-    return fail(
-        "{}: found a file of another run than {}, wanted files of one run, of which the first ends "
-        "in -0001.mcap",
-        path.string(), names_.front());
+  if (!readers_.empty() && *offset != offset_) {
+    return fail("{}: found a file of another run than {}, wanted files of one run, such as {}",
+                path.string(), names_.front(), files_of_run(names_.front(), offset_));
   }
-  offset_ = Duration(offset_ns);
+  offset_ = *offset;
   const auto file = static_cast<uint32_t>(readers_.size());
   if (Status added = add_messages(*reader, file); !added) {
     damages_.push_back(added.error().message + "; the rest of the file is left out");

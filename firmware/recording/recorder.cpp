@@ -196,8 +196,7 @@ void Recorder::write_counters(Time now) {
   message.set_framesets(snapshot.framesets.taken);
   message.set_bus_sent(snapshot.bus.sent);
   message.set_bus_received(snapshot.bus.received);
-  message.set_bus_lost(snapshot.bus.send_replaced + snapshot.bus.send_expired +
-                       snapshot.bus.send_bus_down + snapshot.bus.receive_dropped);
+  message.set_bus_lost(snapshot.bus.send_dropped() + snapshot.bus.receive_dropped);
   message.set_images_not_recorded(images_dropped());
   message.set_events_not_recorded(events_dropped());
   put(kCountersTopic, message, now, now);

@@ -25,6 +25,8 @@ constexpr uint64_t kLogSecond_ns = 1'000'000'000;
 /// than kMostFree_bytes.
 constexpr uint64_t kPartsOfDisk = 20;
 constexpr uint64_t kMostFree_bytes = 1'000'000'000;
+/// A file has at most this part of the bytes of all recordings.
+constexpr uint64_t kPartsOfRecordings = 4;
 /// If all files of earlier runs have exceeded their age by more than this, the clock is probably
 /// wrong. No vehicle stands this long in its normal use, and the date of a GNSS receiver is often
 /// wrong by a multiple of 1024 weeks.
@@ -100,6 +102,24 @@ std::vector<Listed> list_recordings(const fs::path& newest) {
   return files;
 }
 
+/// Lists what may be deleted so that `newest` can grow: the other files of the ring, and then those
+/// of the black box.
+std::vector<Listed> list_others(const fs::path& newest) {
+  std::vector<Listed> files;
+  const fs::path ring = newest.parent_path();
+  for (const fs::path& folder : {ring, ring / kBlackBoxFolder}) {
+    std::ranges::copy_if(
+        list_recordings(folder / newest.filename()), std::back_inserter(files),
+        [&](const Listed& file) { return file.path.filename() != newest.filename(); });
+  }
+  return files;
+}
+
+/// Returns how many bytes of the disk the ring leaves free.
+uint64_t bytes_left_free(const fs::space_info& space) {
+  return std::min(space.capacity / kPartsOfDisk, kMostFree_bytes);
+}
+
 /// Returns how many bytes become free when these files are deleted. A file with several names
 /// counts once, and only if all its names are among them.
 uint64_t bytes_to_free(const std::vector<Listed>& files) {
@@ -142,13 +162,10 @@ Result<RecordingRing> RecordingRing::open(const RecordConfig& config, RecordingH
 }
 
 Status RecordingRing::begin_file(uint64_t log_time_ns) {
-  fs::path path;
-  std::error_code ignored;
-  do {
-    path = config_.directory / file_name(log_time_ns, ++number_);
-  } while (fs::exists(path, ignored));
+  const fs::path path = next_name(log_time_ns);
   delete_old(path, log_time_ns);
   if (Status room = make_room(path); !room) return room;
+  most_bytes_ = bytes_for_recordings(path) / kPartsOfRecordings;
   auto file = RecordingFile::create(path, head_, log_time_ns);
   if (!file) return tl::unexpected(file.error());
   if (file_) bytes_of_closed_ += file_->bytes_written();
@@ -157,6 +174,19 @@ Status RecordingRing::begin_file(uint64_t log_time_ns) {
   std::erase_if(recent_, [&](const RecentFile& old) { return old.end_ns + covered < log_time_ns; });
   recent_.push_back({path, log_time_ns, 0});
   return {};
+}
+
+/// If the clock begins anew with each start, files of earlier runs may have the same time.
+fs::path RecordingRing::next_name(uint64_t log_time_ns) {
+  const auto is_taken = [this](const fs::path& name) {
+    std::error_code ignored;
+    return fs::exists(config_.directory / name, ignored) ||
+           fs::exists(config_.directory / kBlackBoxFolder / name, ignored);
+  };
+  ++number_;
+  named_ns_ = std::max(named_ns_, log_time_ns);
+  while (is_taken(file_name(named_ns_, number_))) named_ns_ += kLogSecond_ns;
+  return config_.directory / file_name(named_ns_, number_);
 }
 
 /// The age of a file counts from the later one of two times: the log time in its name, and the time
@@ -202,19 +232,22 @@ uint64_t RecordingRing::missing_bytes() const {
   std::error_code error;
   const fs::space_info space = space_of_(config_.directory, error);
   if (error) return 0;
-  const uint64_t wanted = std::min(space.capacity / kPartsOfDisk, kMostFree_bytes);
+  const uint64_t wanted = bytes_left_free(space);
   return wanted - std::min(wanted, space.available);
+}
+
+uint64_t RecordingRing::bytes_for_recordings(const fs::path& newest) const {
+  std::error_code error;
+  const fs::space_info space = space_of_(config_.directory, error);
+  if (error || space.capacity == 0) return config_.max_bytes;  // the disk does not tell
+  const uint64_t bytes = space.available + bytes_to_free(list_others(newest));
+  return std::min(config_.max_bytes, bytes - std::min(bytes, bytes_left_free(space)));
 }
 
 Status RecordingRing::make_room(const fs::path& newest) const {
   uint64_t missing = missing_bytes();
   if (missing == 0) return {};
-  std::vector<Listed> files;
-  for (const fs::path& folder : {config_.directory, config_.directory / kBlackBoxFolder}) {
-    std::ranges::copy_if(
-        list_recordings(folder / newest.filename()), std::back_inserter(files),
-        [&](const Listed& file) { return file.path.filename() != newest.filename(); });
-  }
+  const std::vector<Listed> files = list_others(newest);
   if (bytes_to_free(files) >= missing) {
     for (size_t i = 0; i < files.size() && missing > 0; ++i) {
       remove_file(files[i].path);
@@ -235,9 +268,8 @@ Status RecordingRing::write(std::string_view topic, const google::protobuf::Mess
 
 Status RecordingRing::step(uint64_t log_time_ns) {
   const auto length = static_cast<uint64_t>(config_.file_length.count());
-  const uint64_t share = config_.max_bytes / 4;  // so that the black box fits into the ring
   RecentFile& newest = recent_.back();
-  if (log_time_ns < newest.begin_ns + length && file_->bytes_written() < share) {
+  if (log_time_ns < newest.begin_ns + length && file_->bytes_written() < most_bytes_) {
     if (const Status room = make_room(newest.path); !room) return room;
     const Status flushed = file_->flush();
     delete_old(newest.path, log_time_ns);  // the file has grown

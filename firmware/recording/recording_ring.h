@@ -22,7 +22,8 @@ Status check_folder(const std::filesystem::path& directory);
 /// name (a hard link) in the folder `kept`, which the ring does not delete. The file that is being
 /// written can be kept too: it grows under both names. If the disk is full, deletes the oldest
 /// files of the ring, and then those in `kept`. Deletes none if all of them together would not free
-/// enough. One thread.
+/// enough. A file ends before its time when it has a quarter of the bytes that the ring may have,
+/// or that the disk has for it, so that the black box fits into the ring. One thread.
 class RecordingRing {
  public:
   /// The time before an event that the black box covers.
@@ -61,6 +62,9 @@ class RecordingRing {
                 SpaceOf space_of)
       : config_(config), head_(std::move(head)), space_of_(space_of), begin_ns_(log_time_ns) {}
   Status begin_file(uint64_t log_time_ns);
+  /// Returns a name for a file of this time that no other file has, also none in `kept`. The names
+  /// of a run are in the order of time and have the numbers from 1 on.
+  std::filesystem::path next_name(uint64_t log_time_ns);
   /// Deletes the oldest files until the limits of the configuration are met. `newest` is never
   /// deleted, but counts if it exists.
   void delete_old(const std::filesystem::path& newest, uint64_t log_time_ns);
@@ -70,6 +74,8 @@ class RecordingRing {
   Status make_room(const std::filesystem::path& newest) const;
   /// Returns how many bytes are missing of those that the ring leaves free on the disk.
   uint64_t missing_bytes() const;
+  /// Returns how many bytes the recordings in both folders may have.
+  uint64_t bytes_for_recordings(const std::filesystem::path& newest) const;
 
   RecordConfig config_;
   RecordingHead head_;
@@ -78,6 +84,8 @@ class RecordingRing {
   std::optional<RecordingFile> file_;
   std::deque<RecentFile> recent_;  ///< the files that overlap the last minute, oldest first
   int number_ = 0;
+  uint64_t named_ns_ = 0;         ///< the time in the newest name
+  uint64_t most_bytes_ = 0;       ///< of file_
   uint64_t bytes_of_closed_ = 0;  ///< of the files before file_
   bool clock_warned_ = false;
 };

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from tests.house.test_documents import local_links
 
 PICTURE = ".png"  # no picture is installed, because they are large
 LICENCE = "LICENSE"  # Debian installs its text with the name "copyright"
+CONFIG = re.compile(r"(?<![\w./])config/(\w+\.(?:yaml|dbc))\b")
 
 
 def broken_links(folder: Path) -> list[str]:
@@ -25,6 +27,11 @@ def broken_links(folder: Path) -> list[str]:
             if not (page.parent / name).exists():
                 broken.append(f"{page.relative_to(folder)}: {link}")
     return broken
+
+
+def named_configs(page: Path) -> set[str]:
+    """The names of the files of the folder config that the page uses."""
+    return set(CONFIG.findall(page.read_text(encoding="utf-8")))
 
 
 def main() -> int:

@@ -308,6 +308,10 @@ TEST_F(RecordedDriveTest, AMomentIsReadAsTimeOfDayOrSeconds) {
   const std::string time = time_of_day(*data, 2.0);
   EXPECT_NEAR(parse_moment(*data, time).value(), 2.0, 0.11);
   EXPECT_TRUE(parse_moment(*data, time.substr(0, 5)));
+  for (const std::string& first : {std::string("0"), time_of_day(*data, 0.0).substr(0, 5)}) {
+    const auto sentences = explain(*data, parse_moment(*data, first).value());
+    EXPECT_NE(sentences[0].find("the state was"), std::string::npos) << sentences[0];
+  }
   EXPECT_FALSE(parse_moment(*data, "noon"));
   EXPECT_FALSE(parse_moment(*data, time.substr(0, 5) + "pm"));
   EXPECT_FALSE(parse_moment(*data, time.substr(0, 5) + ":99"));

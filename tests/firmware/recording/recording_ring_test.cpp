@@ -1,10 +1,13 @@
-// The ring of recordings on a disk that is full.
+// The ring of recordings on a disk that is full, and the names of its files.
 #include "firmware/recording/recording_ring.h"
 
 #include <fstream>
+#include <random>
 
 #include <gtest/gtest.h>
 
+#include "firmware/recording/messages.h"
+#include "firmware/recording/topics.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::firmware {
@@ -24,9 +27,11 @@ class FullDiskTest : public testing::Test {
     config_.directory = folder_ / "ring";
     fs::create_directories(config_.directory / "kept");
     other_bytes = 0;
+    tells_size = true;
   }
 
   static fs::space_info space(const fs::path& folder, std::error_code& /*error*/) {
+    if (!tells_size) return {0, 0, 0};
     uint64_t used = other_bytes;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       if (entry.is_regular_file()) used += entry.file_size() / entry.hard_link_count();
@@ -48,12 +53,35 @@ class FullDiskTest : public testing::Test {
 
   Result<RecordingRing> open() { return RecordingRing::open(config_, {}, kNow_ns, space); }
 
+  /// Writes an image of 20,000 bytes, which cannot be compressed, ten times a second.
+  static Status drive(RecordingRing& ring, int images) {
+    std::minstd_rand random(1);
+    std::string pixels(20'000, 0);
+    std::ranges::generate(pixels, [&] { return static_cast<char>(random() >> 8U); });
+    foxglove::CompressedImage image;
+    image.set_data(pixels);
+    for (int i = 1; i <= images; ++i) {
+      const uint64_t now_ns = kNow_ns + static_cast<uint64_t>(i) * kSecond_ns / 10;
+      Status written = ring.write(image_topic(0), image, now_ns, now_ns);
+      if (written) written = ring.step(now_ns);
+      if (!written) return written;
+    }
+    return {};
+  }
+  size_t files_in_ring() const {
+    return static_cast<size_t>(std::ranges::count_if(
+        fs::directory_iterator(config_.directory),
+        [](const fs::directory_entry& entry) { return entry.is_regular_file(); }));
+  }
+
   static uint64_t other_bytes;
+  static bool tells_size;
   const test::TemporaryFolder folder_;
   RecordConfig config_;
 };
 
 uint64_t FullDiskTest::other_bytes = 0;
+bool FullDiskTest::tells_size = true;
 
 TEST_F(FullDiskTest, TheOldestFilesMakeRoomForANewRecording) {
   std::vector<fs::path> files;
@@ -131,6 +159,38 @@ TEST_F(FullDiskTest, ARecordingMakesRoomWhileItGrows) {
   other_bytes = 990'000;
   EXPECT_FALSE(ring->step(kNow_ns + 2 * kSecond_ns)) << "it ends before the disk is full";
   EXPECT_TRUE(fs::exists(ring->file()));
+}
+
+TEST_F(FullDiskTest, ADiskThatIsSmallerThanAFileIsUsedInTurn) {
+  const fs::path kept = leave("kept", 1, 100'000);
+  auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  const fs::path first = ring->file();
+  const Status driven = drive(*ring, 150);  // 3 MB in 15 s of the 60 s that a file may have
+  ASSERT_TRUE(driven) << driven.error().message;
+  EXPECT_GT(ring->bytes_written(), 3'000'000U);
+  EXPECT_FALSE(fs::exists(first));
+  EXPECT_GE(files_in_ring(), 3U);
+  EXPECT_TRUE(fs::exists(kept)) << "the black box of an earlier drive";
+}
+
+TEST_F(FullDiskTest, ADiskThatDoesNotTellItsSizeDoesNotEndAFile) {
+  tells_size = false;
+  auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  ASSERT_TRUE(drive(*ring, 50));
+  EXPECT_EQ(files_in_ring(), 1U);
+}
+
+TEST_F(FullDiskTest, TheFilesOfEachRunAreNumberedFromOneAlsoIfItsTimeIsTaken) {
+  ASSERT_TRUE(open()->finish());
+  fs::rename(leave("kept", 28, 10), config_.directory / "kept/bevloc-20400301T000001Z-0001.mcap");
+  config_.file_length = std::chrono::seconds(1);
+  auto ring = open();
+  ASSERT_TRUE(ring) << ring.error().message;
+  EXPECT_EQ(ring->file().filename(), "bevloc-20400301T000002Z-0001.mcap");
+  ASSERT_TRUE(ring->step(kNow_ns + kSecond_ns));
+  EXPECT_EQ(ring->file().filename(), "bevloc-20400301T000002Z-0002.mcap");
 }
 
 TEST_F(FullDiskTest, CountsBytesOnceIfTheNextFileCannotBegin) {

@@ -44,6 +44,8 @@ def _arguments() -> argparse.Namespace:
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(SCENARIOS)}")
     arguments = parser.parse_args()
+    if not arguments.names and not arguments.keep:
+        parser.error(f"found no scenario, wanted one or more of {', '.join(SCENARIOS)}")
     for name in arguments.names:
         if name not in SCENARIOS:
             parser.error(f"no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")

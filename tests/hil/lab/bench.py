@@ -125,6 +125,7 @@ class Bench:
         """Gives the daemon's user the GPIO chips of its configuration, as docs/bring-up.md says."""
         self.agent.check(
             """
+            set -e
             rules=/etc/udev/rules.d/60-bevloc.rules
             bevloc udev-rules --config /etc/bevloc/bevlocd.yaml >$rules
             udevadm control --reload

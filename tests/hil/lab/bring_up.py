@@ -35,12 +35,15 @@ def commands_of(page: pathlib.Path) -> list[str]:
 
 
 def bring_up(run: Run) -> Outcome:
-    """Forgets the installed packages, then types what the page says."""
+    """Purges the installed packages, which must leave nothing, then types what the page says."""
     commands = commands_of(run.bench.folders.source / PAGE)
     run.agent.check(
         """
+        set -e
         apt-get purge -y -qq 'bevloc*'
-        rm -rf /etc/bevloc
+        test ! -e /usr/bin/bevlocd
+        test ! -e /etc/bevloc
+        test ! -e /var/lib/bevloc
         mkdir -p /root/new_user
         cp /packages/*.deb /root/new_user/
         cp /payload/config/rig_demo.yaml /root/new_user/my_rig.yaml

@@ -14,7 +14,7 @@ from tests.hil.lab.program import play, report, run
 from tests.hil.lab.qemu import KERNEL_OPTIONS
 from tests.hil.vehicle_image.disk import Disk
 from tests.hil.vehicle_image.machine import Parts
-from tests.hil.vehicle_image.repository import Repositories
+from tests.hil.vehicle_image.repository import PACKAGE, Repositories
 from tests.hil.vehicle_image.scenarios import SCENARIOS
 from training.option_types import positive
 
@@ -68,6 +68,12 @@ def _arguments() -> argparse.Namespace:
     for name in arguments.names:
         if name not in SCENARIOS:
             parser.error(f"no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")
+    found = len(list(arguments.packages.glob(PACKAGE)))
+    if found != 1 and not arguments.keep_disk:
+        parser.error(
+            f"found {found} files {PACKAGE} in {arguments.packages}, wanted one; "
+            "script/package amd64 bookworm makes the packages"
+        )
     return arguments
 
 

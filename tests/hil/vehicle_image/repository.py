@@ -5,6 +5,8 @@ import pathlib
 import shutil
 import subprocess
 
+# The package of which newer versions are made.
+PACKAGE = "bevloc_*_amd64.deb"
 _SIGNER = "lab@localhost"
 _BROKEN_DAEMON = "#!/bin/sh\necho 'this daemon does not run' >&2\nexit 1\n"
 
@@ -43,7 +45,7 @@ class Repositories:
     def _make(self, name: str, version: str, broken: bool) -> None:
         repository = self.folder / name
         repository.mkdir()
-        (package,) = self._packages.glob("bevloc_*_amd64.deb")
+        (package,) = self._packages.glob(PACKAGE)
         tree = self.folder / "tree"
         _run(["dpkg-deb", "-R", str(package), str(tree)])
         control = tree / "DEBIAN/control"

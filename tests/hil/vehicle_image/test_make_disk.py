@@ -1,7 +1,11 @@
-"""Tests who can read a vehicle's disk. Its root file system has only what make_disk reads."""
+"""Tests who can read a vehicle's disk, and how its space is shared.
+
+The root file system of the tests has only what make_disk reads.
+"""
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -21,6 +25,22 @@ case $2 in
 esac
 """
 _SMALL = {"BEVLOC_ROOT_MB": "8", "BEVLOC_DATA_MB": "8"}
+_JOURNAL = pathlib.Path("vehicle_image/files/etc/systemd/journald.conf.d/size.conf").resolve()
+# The recorder leaves this part of the data partition free (firmware/recording/recording_ring.cpp).
+_FREE = 1 / 20
+
+
+def _number_in(file: pathlib.Path, pattern: str) -> int:
+    found = re.search(pattern, file.read_text(encoding="utf-8"), re.MULTILINE)
+    assert found, f"{file}: found nothing like {pattern}"
+    return int(found[1])
+
+
+class DataPartition(unittest.TestCase):
+    def test_has_room_for_the_journal_beside_a_full_ring_of_recordings(self) -> None:
+        keep_free_mb = _number_in(_JOURNAL, r"^SystemKeepFree=(\d+)M$")
+        data_mb = _number_in(_PROGRAM, r"BEVLOC_DATA_MB:-(\d+)}")
+        self.assertLess(keep_free_mb, _FREE * data_mb)
 
 
 @unittest.skipIf(os.geteuid() != 0, "only root may give files to another user")

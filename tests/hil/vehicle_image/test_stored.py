@@ -1,14 +1,18 @@
-"""Tests the judge of the power cuts, and the commands that the lab reads from a page."""
+"""Tests the judge of the power cuts, the arguments, and the commands that the lab reads."""
 
 import contextlib
 import io
 import pathlib
+import tempfile
 import unittest
+from collections.abc import Callable
 from unittest import mock
 
+from tests.hil.lab import __main__ as lab_program
 from tests.hil.lab.agent import LabError
+from tests.hil.lab.bench import Folders
 from tests.hil.lab.bring_up import MOST_COMMANDS, PAGE, commands_of
-from tests.hil.vehicle_image import __main__ as program
+from tests.hil.vehicle_image import __main__ as image_program
 from tests.hil.vehicle_image.stored import Stored, StoredFile, check_nothing_lost
 
 _SETTLED = {"recording/1.mcap": StoredFile(100, "56ef")}
@@ -62,16 +66,37 @@ class CheckNothingLost(unittest.TestCase):
 
 
 class Arguments(unittest.TestCase):
-    def test_refuse_no_cuts_at_all(self):
-        folders = [f"--{name}=x" for name in ("build", "pictures", "results", "work")]
+    def expect_refused(self, message: str, main: Callable[[], int], *arguments: str) -> None:
         said = io.StringIO()
         with (
-            mock.patch("sys.argv", ["try-image", *folders, "--cuts", "0", "power-cuts"]),
+            mock.patch("sys.argv", ["program", *arguments]),
             contextlib.redirect_stderr(said),
-            self.assertRaises(SystemExit),
+            self.assertRaises(SystemExit) as ended,
         ):
-            program.main()
-        self.assertIn("found '0', wanted a whole number of at least 1", said.getvalue())
+            main()
+        self.assertEqual(ended.exception.code, 2)
+        self.assertIn(message, said.getvalue())
+
+    def expect_image_refused(self, message: str, *arguments: str) -> None:
+        folders = [f"--{name}=x" for name in ("build", "pictures", "results", "work")]
+        self.expect_refused(message, image_program.main, *folders, *arguments)
+
+    def test_refuse_no_cuts_at_all(self):
+        message = "found '0', wanted a whole number of at least 1"
+        self.expect_image_refused(message, "--cuts", "0", "power-cuts")
+
+    def test_refuse_a_folder_that_does_not_have_one_package(self):
+        with tempfile.TemporaryDirectory() as name:
+            message = f"found 0 files bevloc_*_amd64.deb in {name}, wanted one"
+            self.expect_image_refused(message, "--packages", name)
+            for version in ("1", "2"):
+                (pathlib.Path(name) / f"bevloc_{version}_amd64.deb").touch()
+            message = f"found 2 files bevloc_*_amd64.deb in {name}, wanted one"
+            self.expect_image_refused(message, "--packages", name)
+
+    def test_refuse_to_boot_a_guest_without_a_scenario(self):
+        folders = [f"--{name}=x" for name in Folders.__dataclass_fields__]
+        self.expect_refused("found no scenario, wanted one or more", lab_program.main, *folders)
 
 
 class CommandsOfThePage(unittest.TestCase):

@@ -16,18 +16,75 @@ _END_OF_TRIAL = "systemd-bless-boot bad"
 _CAPABILITY = struct.pack("<IIIII", 0x02000001, 1 << 12, 0, 0, 0)
 
 
-class CountBadStart(unittest.TestCase):
+class RunningVersion(unittest.TestCase):
+    """Its entry for the boot loader, and the variables of the firmware."""
+
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.work = pathlib.Path(folder.name)
+        (self.work / "entries").mkdir()
+        (self.work / "variables").mkdir()
+        self.put_entry("bevloc-a.conf")
+
+    def put_entry(self, name: str) -> None:
+        (self.work / "entries" / name).write_text("title bevloc 1\n", encoding="ascii")
+
+    def set_variable(self) -> None:
+        name = "LoaderBootCountPath-4a67b082-0a4c-41cf-b6c7-440b29bb8c4f"
+        (self.work / "variables" / name).touch()
+
+    def entry_and_variables(self) -> list[str]:
+        return [str(self.work / "entries/bevloc-b"), str(self.work / "variables")]
+
+
+class TrialState(RunningVersion):
+    def expect(self, state: str) -> None:
+        command = ["sh", str(_PROGRAMS / "trial-state"), *self.entry_and_variables()]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout, f"{state}\n")
+
+    def test_is_counted_if_the_boot_loader_has_counted_this_start(self) -> None:
+        self.put_entry("bevloc-b+9-1.conf")
+        self.set_variable()
+        self.expect("counted")
+
+    def test_is_uncounted_if_the_firmware_does_not_rename_files(self) -> None:
+        self.put_entry("bevloc-b+10.conf")
+        self.expect("uncounted")
+
+    def test_is_no_trial_without_a_count_in_the_entry(self) -> None:
+        self.put_entry("bevloc-b.conf")
+        self.expect("no")
+        self.put_entry("bevloc-a+9-1.conf")
+        self.expect("no")
+
+    def test_is_no_trial_after_the_version_was_kept_in_this_start(self) -> None:
+        self.put_entry("bevloc-b.conf")
+        self.set_variable()
+        self.expect("no")
+
+    def test_is_a_trial_although_the_boot_partition_cannot_be_read(self) -> None:
+        self.set_variable()
+        self.expect("counted")
+
+
+class CountBadStart(RunningVersion):
+    def setUp(self) -> None:
+        super().setUp()
+        self.put_entry("bevloc-b+9-1.conf")
+        self.set_variable()
         self.stubs = StubPrograms(self.work / "stubs")
         self.stubs.put("systemctl")
         self.stubs.put("systemd-bless-boot")
 
     def calls_of_a_bad_start(self, file: str = "bad-starts") -> list[str]:
         command = ["sh", str(_PROGRAMS / "count-bad-start"), str(self.work / file)]
-        subprocess.run(command, env=self.stubs.environment(), capture_output=True, check=True)
+        command += self.entry_and_variables()
+        done = subprocess.run(
+            command, env=self.stubs.environment(), capture_output=True, text=True, check=True
+        )
+        self.said = done.stderr
         return self.stubs.take_calls()
 
     def test_ends_the_trial_at_the_third_bad_start(self) -> None:
@@ -43,6 +100,33 @@ class CountBadStart(unittest.TestCase):
         self.stubs.put("systemd-bless-boot", "exit 1")
         for _ in range(3):
             self.assertEqual(self.calls_of_a_bad_start()[-1], _RESTART)
+
+    def test_does_nothing_without_a_trial(self) -> None:
+        self.put_entry("bevloc-b.conf")
+        for _ in range(3):
+            self.assertEqual(self.calls_of_a_bad_start(), [])
+        self.assertFalse((self.work / "bad-starts").exists())
+
+
+class BadStartWithoutCount(CountBadStart):
+    """The firmware does not rename files, so the boot loader neither counts nor tells the entry."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        for file in (self.work / "variables").iterdir():
+            file.unlink()
+        (self.work / "entries/bevloc-b+9-1.conf").rename(self.work / "entries/bevloc-b+10.conf")
+
+    def entries(self) -> list[str]:
+        return sorted(file.name for file in (self.work / "entries").iterdir())
+
+    def test_ends_the_trial_at_the_third_bad_start(self) -> None:
+        for _ in range(2):
+            self.assertEqual(self.calls_of_a_bad_start(), [_RESTART])
+            self.assertIn("found firmware that did not rename", self.said)
+            self.assertEqual(self.entries(), ["bevloc-a.conf", "bevloc-b+10.conf"])
+        self.assertEqual(self.calls_of_a_bad_start(), [_RESTART])
+        self.assertEqual(self.entries(), ["bevloc-a.conf", "bevloc-b+0-3.conf"])
 
 
 class CopyRoot(unittest.TestCase):
