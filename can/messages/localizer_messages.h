@@ -197,7 +197,8 @@ inline constexpr Signal kEast{
     .max = 83886.07,
     .has_sna = true,
     .comment =
-        "East of the map's origin, in its local tangent plane. Of the middle of the rear axle."};
+        "East of the map's origin, in its local tangent plane, along the east at the origin (see "
+        "Heading). Of the middle of the rear axle."};
 inline constexpr Signal kNorth{
     .name = "LocalNorth",
     .start_bit = 40,
@@ -209,7 +210,8 @@ inline constexpr Signal kNorth{
     .max = 83886.07,
     .has_sna = true,
     .comment =
-        "North of the map's origin, in its local tangent plane. Of the middle of the rear axle."};
+        "North of the map's origin, in its local tangent plane, along the north at the origin (see "
+        "Heading). Of the middle of the rear axle."};
 inline constexpr const Signal* kSignals[] = {&kEast, &kNorth};
 inline constexpr Message kMessage{
     .name = "LOC_PosLocal",
@@ -225,7 +227,9 @@ namespace loc_attitude {
 
 inline constexpr Signal kHeading = heading_signal(
     "Heading",
-    "Of the vehicle's x axis, clockwise from true north. (YawRate counts the other way.)");
+    "Of the vehicle's x axis, clockwise from true north at the vehicle. Clockwise from LocalNorth, "
+    "the direction is Heading - (Longitude - longitude of the map's origin) * sin(Latitude). "
+    "(YawRate counts the other way.)");
 inline constexpr const Signal* kSignals[] = {&kHeading};
 inline constexpr Message kMessage{.name = "LOC_Attitude",
                                   .id_offset = 5,

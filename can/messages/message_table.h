@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "can/messages/clock_message.h"
 #include "can/messages/identity_message.h"
@@ -40,6 +42,16 @@ inline constexpr const Message* kMessages[] = {
     &veh_gnss_authentication::kMessage,
     &veh_freshness::kMessage,
 };
+
+/// Returns the identifiers of all messages of the localizer, also of those that a configuration
+/// does not send.
+inline std::vector<uint32_t> localizer_ids(const BaseIds& base) {
+  std::vector<uint32_t> ids;
+  for (const Message* message : kMessages) {
+    if (message->sender == Sender::kLocalizer) ids.push_back(message->id(base));
+  }
+  return ids;
+}
 
 /// Whether a message of the localizer has this identifier.
 inline bool is_localizer_id(uint32_t id, const BaseIds& base) {

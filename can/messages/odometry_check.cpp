@@ -56,6 +56,11 @@ OdometryVerdict OdometryCheck::judge(const Wheels& sample) {
   return verdict;
 }
 
+void OdometryCheck::note_gap() {
+  recent_count_ = 0;
+  disputed_.reset();
+}
+
 OdometryVerdict OdometryCheck::verdict_of(const Wheels& sample) {
   if (is_too_sharp(sample)) return OdometryVerdict::kTooSharp;
   if (wheels_contradict(sample)) return OdometryVerdict::kWheelsContradictYawRate;

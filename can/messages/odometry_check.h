@@ -42,6 +42,10 @@ class OdometryCheck {
 
   OdometryVerdict judge(const Wheels& sample);
 
+  /// Call it after a time that the clock did not count. The vehicle may have any speed then, so the
+  /// next sample is not compared with earlier ones. What was learned about the wheels stays.
+  void note_gap();
+
   /// Whether the samples come much less often than they should. This becomes true when their mean
   /// interval exceeds the right one by a factor of 2.25, and false when it is below 1.5 times that
   /// interval: 45 ms and 30 ms for samples that should come every 20 ms.

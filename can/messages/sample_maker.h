@@ -38,6 +38,8 @@ class SampleMaker {
 
   /// Call it first for each frame, with its time of arrival.
   void note_frame(Time received) { latest_ = received; }
+  /// OdometryCheck::note_gap().
+  void note_gap() { odometry_check_.note_gap(); }
   void note_implausible() { fault_times_.implausible = latest_; }
   /// Notes a frame that has none of the vehicle's messages.
   void note_unknown(const Frame& frame, const BaseIds& base);

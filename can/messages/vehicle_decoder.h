@@ -80,6 +80,10 @@ class VehicleDecoder {
   /// Returns the samples that this frame completes: none, one, or one of each kind.
   virtual VehicleSamples accept(const ReceivedFrame& received) = 0;
 
+  /// Call it after the machine was suspended. The clock stood still meanwhile, so a change of speed
+  /// since then is no jump.
+  virtual void note_gap() = 0;
+
   virtual VehicleInputCounters counters() const = 0;
 
   virtual VehicleFaultTimes fault_times() const = 0;

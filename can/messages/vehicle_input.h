@@ -23,6 +23,7 @@ class VehicleInput final : public VehicleDecoder {
   VehicleInput(const BaseIds& base, GeodeticPosition map_origin, double rear_track_m);
 
   VehicleSamples accept(const ReceivedFrame& received) override;
+  void note_gap() override { maker_.note_gap(); }
   VehicleInputCounters counters() const override;
   VehicleFaultTimes fault_times() const override { return maker_.fault_times(); }
 

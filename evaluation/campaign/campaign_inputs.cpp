@@ -9,8 +9,8 @@
 #include "common/shipped_file.h"
 #include "evaluation/choice_option.h"
 #include "evaluation/drivable_map.h"
-#include "evaluation/files_of_config.h"
 #include "evaluation/town_seeds.h"
+#include "firmware/config/files_of_config.h"
 
 namespace bevloc::evaluation {
 namespace {

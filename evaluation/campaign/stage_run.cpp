@@ -55,7 +55,7 @@ class StageRun {
         }
         continue;
       }
-      input_.step(Duration::zero());
+      input_.step(clock_, Duration::zero());
       vision_.step(now);
       estimation_.tick(clock_);
       sink(reader_.step(now));

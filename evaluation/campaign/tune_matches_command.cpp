@@ -11,10 +11,10 @@
 #include "evaluation/campaign/campaign.h"
 #include "evaluation/campaign/match_recorder.h"
 #include "evaluation/drivable_map.h"
-#include "evaluation/files_of_config.h"
 #include "evaluation/map_turns.h"
 #include "evaluation/progress_bar.h"
 #include "evaluation/town_seeds.h"
+#include "firmware/config/files_of_config.h"
 #include "pipeline/calibration/rig_yaml.h"
 
 namespace bevloc::evaluation {

@@ -108,11 +108,8 @@ FrameCounts Appliance::frame_counts() const {
   counts.displaced = queues_.frames.dropped();
   counts.skipped = vision_.framesets().counters().frames_skipped;
   for (int camera = 0; camera < kCameraCount; ++camera) {
-    const drivers::SynchronizerCounters refused = vision_.framesets().frames_of(camera);
-    counts.mismatched += refused.duplicate + refused.out_of_order + refused.late + refused.future +
-                         refused.overflow + refused.unmatched;
-    const drivers::CameraCounters missed = hardware_.cameras[camera]->counters();
-    counts.missed += missed.no_buffer + missed.overrun + missed.lost + missed.damaged;
+    counts.mismatched += vision_.framesets().frames_of(camera).refused();
+    counts.missed += hardware_.cameras[camera]->counters().missed();
   }
   return counts;
 }

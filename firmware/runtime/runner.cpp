@@ -122,7 +122,7 @@ void start_stages(Appliance& appliance, Realtime& realtime, const std::atomic<bo
     realtime.begin_thread(ThreadRole::kCan, "can-in");
     while (running) {
       heartbeats.can_in.beat();
-      appliance.vehicle_input().step(kPatience);
+      appliance.vehicle_input().step(appliance.clock(), kPatience);
     }
   });
   if (GnssStage* gnss = appliance.gnss(); gnss != nullptr) {
@@ -176,7 +176,7 @@ void receive_confirmations(Appliance& appliance) {
     return counters.confirmed > 0 && counters.confirmed < counters.sent;
   };
   for (int tries = 0; tries == 0 || (waits() && tries < kMostTries); ++tries) {
-    appliance.vehicle_input().step(std::chrono::milliseconds(1));
+    appliance.vehicle_input().step(appliance.clock(), std::chrono::milliseconds(1));
   }
 }
 
@@ -232,7 +232,7 @@ void run_lockstep(Appliance& appliance, drivers::VirtualClock& clock, const Comp
   for (bool running = true; running; clock.advance(kBusCycle)) {
     const Time now = clock.now();
     if (companion != nullptr) companion->act(now);
-    appliance.vehicle_input().step(Duration::zero());
+    appliance.vehicle_input().step(clock, Duration::zero());
     appliance.heartbeats().can_in.beat();
     for (CaptureStage& stage : appliance.capture()) stage.step(Duration::zero());
     appliance.vision().step(clock, Duration::zero());

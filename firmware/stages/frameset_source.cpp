@@ -19,7 +19,19 @@ void FramesetSource::take_frames(const drivers::Clock& clock, Duration timeout) 
   }
   for (auto frame = frames_.pop(timeout); frame; frame = frames_.pop(Duration::zero())) {
     look_at_clock(clock);
-    synchronizer_.add(std::move(*frame), clock.now());
+    add(std::move(*frame), clock.now());
+  }
+}
+
+void FramesetSource::add(drivers::Frame frame, Time now) {
+  const int camera = frame.camera;
+  const bool jumped = frame.stamp_jumped;
+  const uint64_t jumps = frame.stamp_jumps;
+  const drivers::FrameFate fate = synchronizer_.add(std::move(frame), now);
+  const bool fits = fate != drivers::FrameFate::kFuture && fate != drivers::FrameFate::kOutOfOrder;
+  displaced_.cameras[camera] = jumped && !fits;
+  if (displaced_.cameras[camera]) {
+    displaced_.stamp_jumps = std::max(displaced_.stamp_jumps, jumps);
   }
 }
 

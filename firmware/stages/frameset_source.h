@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <optional>
 
 #include "common/published.h"
@@ -25,6 +26,13 @@ struct NewestFrameset {
   drivers::Frameset frameset;
   bool skipped = false;         ///< older framesets were skipped for this one
   bool unsynchronized = false;  ///< the cameras do not expose together (Synchrony)
+};
+
+/// The cameras whose latest frame is in no frameset because its time stamp jumped: it lies in the
+/// future, or before the camera's earlier frames.
+struct DisplacedFrames {
+  CameraMask cameras;
+  uint64_t stamp_jumps = 0;  ///< the most that a frame stated (drivers::Frame)
 };
 
 /// Owns the synchronizer. Thread-bound: called from the vision thread. counters(), synchrony() and
@@ -58,6 +66,8 @@ class FramesetSource {
     return synchrony_.unsynchronized_without_framesets(now);
   }
 
+  const DisplacedFrames& displaced() const { return displaced_; }
+
   const FramesetCounters& counters() const { return counters_; }
   const SynchronyCounters& synchrony() const { return synchrony_.counters(); }
   /// Returns what became of the frames of one camera.
@@ -65,11 +75,13 @@ class FramesetSource {
 
  private:
   void look_at_clock(const drivers::Clock& clock);
+  void add(drivers::Frame frame, Time now);
   std::optional<NewestFrameset> poll(Time now);
 
   drivers::FramesetSynchronizer synchronizer_;
   Synchrony synchrony_;
   FrameQueue& frames_;
+  DisplacedFrames displaced_;
   FramesetCounters counters_;
   std::optional<Time> latest_look_;
   Duration suspended_{};  ///< Clock::suspended() at the latest look

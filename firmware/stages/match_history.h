@@ -25,7 +25,7 @@ class MatchHistory {
       if (seen.confirms()) confirmed_time_ = frame_time;
       accepted_in_a_row_ = seen.confirms_start() ? accepted_in_a_row_ + 1 : 0;
       refused_in_a_row_ = 0;
-    } else if (outcome.update != TrackerUpdate::kNoEvidence) {
+    } else if (is_refused(outcome.update)) {
       accepted_in_a_row_ = 0;
       ++refused_in_a_row_;
     }
@@ -51,6 +51,13 @@ class MatchHistory {
   std::optional<Time> take_unsent() { return std::exchange(unsent_time_, std::nullopt); }
 
  private:
+  /// Whether this answer speaks against the match. A match without evidence says nothing, and
+  /// nobody compares a match with a pose if there is none of its time.
+  static bool is_refused(TrackerUpdate update) {
+    return update == TrackerUpdate::kGated || update == TrackerUpdate::kNotFinite ||
+           update == TrackerUpdate::kImplausible;
+  }
+
   std::optional<Time> accepted_time_;
   std::optional<Time> confirmed_time_;
   std::optional<Time> unsent_time_;

@@ -54,7 +54,8 @@ void StampWatch::compare_heading(const VisionReport& report) {
 
 void StampWatch::note_gap() {
   monitor_.note_gap();
-  if (!latest_jumped_) return;
+  // A jump that bends overruled stays overruled.
+  if (!latest_jumped_ || !jumped_) return;
   // The next report says whether the stamps are still off.
   latest_jumped_ = jumped_ = false;
 }

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 
+#include "firmware/threads/clock_gap.h"
+
 namespace bevloc::firmware {
 
 VehicleInputStage::VehicleInputStage(can::Bus& bus, std::unique_ptr<can::VehicleDecoder> decoder,
                                      VehicleQueue& samples)
     : bus_(bus), decoder_(std::move(decoder)), samples_(samples) {}
 
-void VehicleInputStage::step(Duration timeout) {
-  if (!bus_.wait(timeout)) return;
+void VehicleInputStage::step(const drivers::Clock& clock, Duration timeout) {
+  const bool has_frames = bus_.wait(timeout);
+  note_suspension(clock);
+  if (!has_frames) return;
   while (const auto received = bus_.receive()) {
     if (secoc_) {
       take_authentic(*received);
@@ -19,6 +23,12 @@ void VehicleInputStage::step(Duration timeout) {
   }
   counters_.store(decoder_->counters());
   if (secoc_) secoc_counters_.store(secoc_->counters());
+}
+
+void VehicleInputStage::note_suspension(const drivers::Clock& clock) {
+  const Duration suspended = clock.suspended();
+  if (suspended - suspended_ > ClockGapDetector::kSuspension) decoder_->note_gap();
+  suspended_ = suspended;
 }
 
 void VehicleInputStage::take(const can::ReceivedFrame& received) {

@@ -10,6 +10,7 @@
 #include "can/messages/vehicle_decoder.h"
 #include "can/secoc/secoc_receiver.h"
 #include "common/published.h"
+#include "drivers/clock/clock.h"
 #include "firmware/stages/messages.h"
 
 namespace bevloc::firmware {
@@ -29,7 +30,7 @@ class VehicleInputStage {
   void ignore_gnss() { ignores_gnss_ = true; }
 
   /// Waits for CAN frames, at most `timeout`, and queues the samples that they complete.
-  void step(Duration timeout);
+  void step(const drivers::Clock& clock, Duration timeout);
 
   /// Returns what is wrong with the vehicle's messages at `now`: kOdometryImplausible,
   /// kForeignSender, both or none. Frames that are not authentic count as those of a foreign
@@ -46,10 +47,12 @@ class VehicleInputStage {
   void take(const can::ReceivedFrame& received);
   void take_authentic(const can::ReceivedFrame& received);
   void publish_faults();
+  void note_suspension(const drivers::Clock& clock);
 
   can::Bus& bus_;
   const std::unique_ptr<can::VehicleDecoder> decoder_;
   VehicleQueue& samples_;
+  Duration suspended_{};  ///< Clock::suspended() at the latest step
   Published<can::VehicleInputCounters> counters_;
   Published<can::SecocCounters> secoc_counters_;
   bool ignores_gnss_ = false;

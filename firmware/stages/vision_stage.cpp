@@ -22,6 +22,9 @@ constexpr double kDriving_mps = 1.0;
 constexpr Duration kSettledStanding = std::chrono::seconds(1);
 constexpr Duration kCheckPeriod = std::chrono::seconds(60);
 
+/// Displaced frames are reported again after this time.
+constexpr Duration kDisplacedPeriod = std::chrono::milliseconds(200);
+
 CameraMask with_jumped_stamps(const drivers::Frameset& frameset) {
   CameraMask jumped;
   for (int camera = 0; camera < kCameraCount; ++camera) {
@@ -95,18 +98,22 @@ bool VisionStage::step(const drivers::Clock& clock, Duration timeout) {
     reports_.push(report_on(std::move(*newest)));
     return true;
   }
-  const bool is_unsynchronized = framesets_.unsynchronized_without_framesets(now);
+  report_without_frameset(now);
+  return false;
+}
+
+void VisionStage::report_without_frameset(Time now) {
+  const bool is_displaced = most_stamps_displaced(now);
   // If the check at the start has found a fault, the fault is reported before the first frameset
   // comes.
   const bool is_faulty_start = counters_.network_fault && counters_.framesets == 0;
-  if (is_unsynchronized || is_faulty_start) {
-    VisionReport report;
-    report.frame_time = now;
-    report.unsynchronized = is_unsynchronized;
-    report.network_fault = counters_.network_fault;
-    reports_.push(report);
-  }
-  return false;
+  VisionReport report;
+  report.frame_time = now;
+  report.unsynchronized = framesets_.unsynchronized_without_framesets(now);
+  report.stamps_jumped = most_jumped_;
+  report.stamp_jumps = stamp_jumps_;
+  report.network_fault = counters_.network_fault;
+  if (report.unsynchronized || is_displaced || is_faulty_start) reports_.push(report);
 }
 
 VisionReport VisionStage::report_on(NewestFrameset newest) {
@@ -117,8 +124,8 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
   VisionReport report;
   // A frame with a wrong stamp would be matched with the wrong pose. If most time stamps have
   // jumped, the frames are matched, and the tracker has to find out whether the stamps are right.
-  report.stamps_jumped = most_stamps_jumped(frameset);
-  report.stamp_jumps = stamp_jumps_of_most(frameset);
+  report.stamps_jumped = most_jumped_ = most_stamps_jumped(frameset);
+  report.stamp_jumps = stamp_jumps_ = stamp_jumps_of_most(frameset);
   if (!report.stamps_jumped) leave_out(jumped_, frameset);
   report.frame_time = frameset.time;
   report.present = frameset.present;
@@ -149,12 +156,26 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
 }
 
 bool VisionStage::most_stamps_jumped(const drivers::Frameset& frameset) {
-  const CameraMask delivering = frameset.present | latest_present_;
+  const CameraMask displaced = framesets_.displaced().cameras;
+  const CameraMask delivering = frameset.present | latest_present_ | displaced;
   jumped_ &= delivering & ~frameset.present;
-  jumped_ |= with_jumped_stamps(frameset);
+  jumped_ |= with_jumped_stamps(frameset) | displaced;
   latest_present_ = frameset.present;
   counters_.stamps_jumped = static_cast<unsigned>(jumped_.to_ulong());
   return 2 * jumped_.count() > delivering.count();
+}
+
+bool VisionStage::most_stamps_displaced(Time now) {
+  const DisplacedFrames& displaced = framesets_.displaced();
+  const CameraMask delivering = latest_present_ | displaced.cameras;
+  if (2 * displaced.cameras.count() <= delivering.count()) return false;
+  if (now < latest_displaced_ + kDisplacedPeriod) return false;
+  latest_displaced_ = now;
+  most_jumped_ = true;
+  stamp_jumps_ = std::max(stamp_jumps_, displaced.stamp_jumps);
+  jumped_ |= displaced.cameras;
+  counters_.stamps_jumped = static_cast<unsigned>(jumped_.to_ulong());
+  return true;
 }
 
 void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,

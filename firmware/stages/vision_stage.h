@@ -87,10 +87,15 @@ class VisionStage {
 
  private:
   VisionReport report_on(NewestFrameset newest);
+  /// Reports faults that are known without a frameset.
+  void report_without_frameset(Time now);
   /// Says which cameras deliver frames whose time stamps have jumped, and returns whether these are
   /// most. Two groups of cameras that expose at different times come in turn, each in a frameset of
   /// its own. So the cameras of the frameset before count, too.
   bool most_stamps_jumped(const drivers::Frameset& frameset);
+  /// Returns true, at most every 200 ms, while the time stamps of most cameras have jumped so far
+  /// that no frameset has their frames.
+  bool most_stamps_displaced(Time now);
   /// Matches the frameset, and fills in the parts of the report that depend on the images.
   void match(const drivers::Frameset& frameset, const Prior& prior, VisionReport& report);
   /// Checks network and solvers. Logs why a check failed.
@@ -111,6 +116,9 @@ class VisionStage {
   std::array<CauseLog, kCameraCount> causes_;  ///< why images could not be read
   CameraMask jumped_;          ///< cameras of the latest two framesets whose time stamps jumped
   CameraMask latest_present_;  ///< cameras of the latest frameset
+  bool most_jumped_ = false;   ///< VisionReport::stamps_jumped of the latest report
+  uint64_t stamp_jumps_ = 0;   ///< VisionReport::stamp_jumps of the latest report
+  Time latest_displaced_ = Time::min();  ///< when displaced frames were reported last
   Time latest_check_ = Time::min();
   std::optional<Time> standing_since_;
 };

@@ -53,8 +53,10 @@ constexpr double kSupportingLean = 1.0;
 constexpr double kWheelMemory_s = 30.0;
 /// Larger innovations count as this many standard deviations, so that one outlier is no drift.
 constexpr double kMaxDriftStep = 3.0;
-/// Limit for the change of GNSS errors, in standard deviations.
+/// Limit for the change of GNSS errors, in standard deviations of the change. The other number is
+/// added to it, in standard deviations of GNSS: the expected change of two close times is almost 0.
 constexpr double kGnssMoveLimit = 5.0;
+constexpr double kGnssMoveLeast = 0.3;
 /// Errors of odometry that OdometryMonitor does not find: of speed and yaw rate at once, and
 /// growing.
 constexpr double kOdometryError_mps = 0.6;
@@ -208,7 +210,10 @@ void Arbiter::add_match(Time time, const PoseInnovation& innovation, bool passes
   const bool begins = !passes_gate && match_.refused_in_a_row == 0;
   match_.add(time, innovation, passes_gate);
   if (passes_gate) explained_ = false;
-  if (begins) dispute_since_ = time;
+  if (begins) {
+    dispute_since_ = time;
+    for (GnssRecord& record : gnss_records_) record.match_offset = match_.offset;
+  }
   match_.readmit_after(kMatchesToReadmit);
 }
 
@@ -222,9 +227,12 @@ bool Arbiter::answers_dispute(const PoseInnovation& innovation) const {
 void Arbiter::add_gnss(Time time, const PoseInnovation& innovation, bool passes_gate,
                        const std::optional<GnssError>& gnss_error) {
   gnss_.add(time, innovation, passes_gate);
-  gnss_records_[gnss_count_++ % kGnssRecords] = {
-      time, innovation.squared_distance,
-      squared_distance(innovation.error - match_.offset, innovation.covariance)};
+  gnss_added_ = time;
+  gnss_records_[gnss_count_++ % kGnssRecords] = {.time = time,
+                                                 .error = innovation.error,
+                                                 .covariance = innovation.covariance,
+                                                 .from_estimate = innovation.squared_distance,
+                                                 .match_offset = match_.offset};
   if (!gnss_error) {
     forget_gnss_errors();
   } else if (!gnss_.excluded) {
@@ -250,7 +258,7 @@ void Arbiter::note_gnss_error(Time time, const GnssError& gnss_error) {
     const double expected = std::sqrt(2.0 * (1.0 - std::exp(-age_s / gnss_correlation_s_)));
     const Eigen::Vector3d change =
         GnssError{gnss_error.in_map - before.in_map, gnss_error.vehicle_yaw_rad}.in_vehicle();
-    if (change.cwiseAbs().maxCoeff() > kGnssMoveLimit * expected + 0.3) {
+    if (change.cwiseAbs().maxCoeff() > kGnssMoveLimit * expected + kGnssMoveLeast) {
       moved_gnss_axis_ = largest_of(change);
     }
   }
@@ -291,6 +299,8 @@ Verdict Arbiter::judge(Time now, PoseStanding standing) {
   Verdict verdict;
   const bool valid = standing == PoseStanding::kValid;
   if (!valid) gnss_.excluded = false;
+  // While GNSS is silent, its refusals are no dispute. After it, its error may be another one.
+  if (!gnss_speaks(now)) gnss_.refused_in_a_row = 0;
   // Once the pose is lost, the place of the refused match says nothing any more. A right match that
   // is compared with this place would not count, and would never be trusted again.
   if (!valid && match_.excluded) match_.refused_in_a_row = 0;
@@ -343,7 +353,7 @@ void Arbiter::ask_gnss(Verdict& verdict) {
     if (record.time <= dispute_since_) continue;
     ++samples;
     from_estimate += record.from_estimate;
-    from_match += record.from_match;
+    from_match += squared_distance(record.error - record.match_offset, record.covariance);
   }
   if (samples < kDecidingSamples || gnss_.excluded) {
     verdict.undecided = true;

@@ -44,6 +44,9 @@ class Arbiter {
   /// `gnss_correlation_s` is the time constant of GNSS errors.
   explicit Arbiter(double gnss_correlation_s) : gnss_correlation_s_(gnss_correlation_s) {}
 
+  /// A GNSS sample older than this says nothing about the pose.
+  static constexpr Duration kGnssLifetime = std::chrono::seconds(2);
+
   /// Adds a match that reached the gate; `time` is its frame time.
   void add_match(Time time, const PoseInnovation& innovation, bool passes_gate);
   /// Adds a GNSS sample that reached the gate. `gnss_error` is Tracker::gnss_error(), or nothing
@@ -61,6 +64,9 @@ class Arbiter {
   bool trusts_match() const { return !match_.excluded; }
   bool trusts_gnss() const { return !gnss_.excluded; }
 
+  /// Whether a GNSS sample of the last kGnssLifetime has reached the gate.
+  bool gnss_speaks(Time now) const { return gnss_added_ && now - *gnss_added_ <= kGnssLifetime; }
+
   /// Whether dead reckoning drifts: the innovations of the match lean to one side, or at least two
   /// of match, GNSS and wheels say that the yaw rate has a bias. Returns false if only the heading
   /// of the match is wrong (match_leans_alone()).
@@ -68,6 +74,7 @@ class Arbiter {
   void forget_drift(Time now);
 
   int matches_refused_in_a_row() const { return match_.refused_in_a_row; }
+  int gnss_refused_in_a_row() const { return gnss_.refused_in_a_row; }
 
   /// The offset of a disputed voter from the estimate, in the vehicle frame (m, m, rad). The pose
   /// may be wrong by as much. Returns an offset while a match is disputed and not excluded, or
@@ -112,11 +119,15 @@ class Arbiter {
     bool readmit_after(int agreeing);
   };
 
-  /// A recent GNSS sample.
+  /// The innovation of a recent GNSS sample.
   struct GnssRecord {
     Time time;
+    Eigen::Vector3d error = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
     double from_estimate = 0.0;  ///< squared distance
-    double from_match = 0.0;     ///< squared distance from the pose of the disputed match
+    /// Offset of the match that was disputed when the sample came. The first match of a dispute
+    /// sets it for the samples that came between its frame and the match itself.
+    Eigen::Vector3d match_offset = Eigen::Vector3d::Zero();
   };
 
   static constexpr int kDisputingRefusals = 3;
@@ -163,6 +174,7 @@ class Arbiter {
   bool gnss_disputed_ = false;  ///< GNSS is refused, and nothing tells whether it is right
   std::array<GnssRecord, kGnssRecords> gnss_records_{};
   size_t gnss_count_ = 0;
+  std::optional<Time> gnss_added_;  ///< time of the latest GNSS sample
   /// GNSS errors of the last seconds, one per second.
   struct TimedGnssError {
     Time time;

@@ -70,6 +70,9 @@ struct FilterState {
 
   /// Adds an estimated error, in the order of Index, to the estimate.
   void apply(const Vector& error);
+
+  /// Adds an independent error of this standard deviation to the uncertainty of one state.
+  void add_sigma(Index index, double sigma) { covariance(index, index) += square_of(sigma); }
 };
 
 /// Process noise as standard deviations. The word "per_sqrt" marks white noise, whose sigma grows

@@ -18,7 +18,8 @@ constexpr double kRefuting = 4.5;
 /// deviations, because the wheels then slip. Without a new start, the filter would keep the error
 /// after the wheels grip again.
 constexpr double kMostScaleSigmas = 5.0;
-/// Refused GNSS samples in a row, without a match, after which the pose starts again.
+/// The pose starts again after this many refused GNSS samples in a row, if no match has passed for
+/// kMatchAbsence. Samples of excluded GNSS do not count, because two voters have found them wrong.
 constexpr int kRefusalsToRestart = 15;
 /// If the sigma of the heading exceeds this, the pose starts again, because the filter is linear in
 /// the heading. Only a gap in the odometry makes the sigma so large.
@@ -32,8 +33,6 @@ constexpr double kComparing_mps = 1.0;
 /// While the pose is not valid, the support of its matches counts for this long after the latest
 /// match. After that, the vehicle may be in another lane.
 constexpr Duration kSupportLifetime = std::chrono::seconds(5);
-/// A GNSS sample older than this says nothing about the pose.
-constexpr Duration kGnssLifetime = std::chrono::seconds(2);
 
 /// Only GNSS supports a new or lost pose, and a receiver may claim to be more exact than it is.
 /// With this sigma, right matches outweigh GNSS.
@@ -86,16 +85,15 @@ TrackerUpdate PoseEstimator::add_gnss(const GnssSample& received) {
     gnss_sigma_.head<2>().setConstant(
         std::max(gnss.position_sigma_m, model.gnss_min_position_sigma_m));
     gnss_sigma_.z() = std::max(gnss.yaw_sigma_rad, model.gnss_min_yaw_sigma_rad);
-    gnss_has_yaw_ = sample.yaw.has_value();
+    gnss_has_yaw_ = gnss.has_yaw;
   }
   if (!had_pose || !reached_the_gate(update)) return update;
-  gnss_judged_ = sample.time;
   if (yaw) gnss_scatter_.add(at_axle, yaw->yaw_rad);
   const bool passes = update == TrackerUpdate::kAccepted;
   std::optional<GnssError> error;
   if (pose_valid_) error = tracker_.gnss_error();
   arbiter_.add_gnss(sample.time, tracker_.latest_innovation(), passes, error);
-  gnss_refused_in_a_row_ = passes ? 0 : gnss_refused_in_a_row_ + 1;
+  trusted_gnss_refused_ = passes || !trusted ? 0 : trusted_gnss_refused_ + 1;
   if (passes && trusted) compare_map(sample);
   return update;
 }
@@ -168,7 +166,8 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
   verdict_ = arbiter_.judge(now, pose_valid ? PoseStanding::kValid : lost_or_new);
   verdict_.map_contradicts = map_offset_.contradicts();
   // GNSS does not contradict the pose while no samples come.
-  const bool gnss_speaks = gnss_judged_ && now - *gnss_judged_ <= kGnssLifetime;
+  const bool gnss_speaks = arbiter_.gnss_speaks(now);
+  if (!gnss_speaks) trusted_gnss_refused_ = 0;
   verdict_.gnss_contradicts =
       gnss_speaks && (verdict_.gnss_contradicts || gnss_scatter_.contradicts());
   verdict_.gnss_excluded = gnss_speaks && verdict_.gnss_excluded;
@@ -178,7 +177,7 @@ void PoseEstimator::judge(Time now, bool pose_valid) {
     arbiter_.forget_drift(now);
   }
   const bool matched = match_passed_ && now - *match_passed_ <= kMatchAbsence;
-  const bool gnss_refused = gnss_refused_in_a_row_ >= kRefusalsToRestart && !matched;
+  const bool gnss_refused = trusted_gnss_refused_ >= kRefusalsToRestart && !matched;
   const bool start_failed =
       !trusted_ && arbiter_.matches_refused_in_a_row() >= kRefusalsToStartAgain;
   const bool wheels_slip = std::abs(tracker_.speed_scale_error()) >
@@ -213,11 +212,11 @@ bool PoseEstimator::is_contradicted() const {
 }
 
 bool PoseEstimator::gnss_is_recent(Time now) const {
-  return gnss_passed_ && now - *gnss_passed_ <= kGnssLifetime;
+  return gnss_passed_ && now - *gnss_passed_ <= Arbiter::kGnssLifetime;
 }
 
 bool PoseEstimator::gnss_confirms(Time now) const {
-  if (!gnss_is_recent(now) || gnss_refused_in_a_row_ > 0) return false;
+  if (!gnss_is_recent(now) || arbiter_.gnss_refused_in_a_row() > 0) return false;
   const Eigen::Vector3d error = tracker_.gnss_error().in_vehicle().cwiseAbs();
   return error.x() <= kConfirmingAlong && error.y() <= kConfirmingAcross &&
          error.z() <= kConfirmingYaw;
@@ -247,10 +246,9 @@ void PoseEstimator::restart() {
   start_confirmation_.reset();
   pose_valid_ = false;
   trusted_ = false;
-  gnss_refused_in_a_row_ = 0;
+  trusted_gnss_refused_ = 0;
   match_passed_.reset();
   gnss_passed_.reset();
-  gnss_judged_.reset();
 }
 
 void PoseEstimator::reset() {

@@ -93,10 +93,10 @@ class PoseEstimator {
   Verdict verdict_;
   bool pose_valid_ = false;
   bool trusted_ = false;  ///< the pose was valid at least once since the start or restart
-  int gnss_refused_in_a_row_ = 0;
+  /// Number in a row of GNSS samples that the gate refused while the arbiter trusted GNSS.
+  int trusted_gnss_refused_ = 0;
   std::optional<Time> match_passed_;  ///< latest match that passed the gate
   std::optional<Time> gnss_passed_;   ///< latest trusted GNSS sample that passed the gate
-  std::optional<Time> gnss_judged_;   ///< latest GNSS sample that reached the gate
   Eigen::Vector3d gnss_sigma_ = Eigen::Vector3d::Ones();  ///< sigma of that sample: (m, m, rad)
   bool gnss_has_yaw_ = false;                             ///< whether that sample has a heading
 };

@@ -14,6 +14,9 @@ namespace {
 const Eigen::Vector3d kWrongWithin{10.0, 10.0, radians(10.0)};
 /// How often the match settles on a wrong place without any other sign.
 constexpr double kWrongPlaceRate_per_s = 1e-9;
+/// The search for the protection level begins at this many sigmas. An error beyond them is rarer
+/// than any integrity risk.
+constexpr double kBeyondAnyRisk = 8.0;
 constexpr int kBisections = 30;
 
 /// How much better a wrong place than the right place explains the normalised GNSS error of an
@@ -58,9 +61,10 @@ struct AxisMixture {
 
 double quantile(const AxisMixture& mixture, double risk) {
   double low = 0.0;
-  double high = 8.0 * mixture.sigma;
-  high = std::max(high, mixture.bounded ? std::abs(mixture.wrong_mean) + 8.0 * mixture.wrong_sigma
-                                        : mixture.wrong_within);
+  double high = kBeyondAnyRisk * mixture.sigma;
+  high = std::max(high, mixture.bounded
+                            ? std::abs(mixture.wrong_mean) + kBeyondAnyRisk * mixture.wrong_sigma
+                            : mixture.wrong_within);
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (low + high);
     (mixture.probability_beyond(middle) > risk ? low : high) = middle;

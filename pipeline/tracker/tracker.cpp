@@ -25,6 +25,18 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
          matrix.llt().info() == Eigen::Success;
 }
 
+void loosen_odometry_errors(const TrackerParameters& parameters, FilterState& state) {
+  state.add_sigma(FilterState::kSpeedScale, parameters.initial_speed_scale_sigma);
+  state.add_sigma(FilterState::kYawRateBias, parameters.loosened_yaw_rate_bias_sigma_radps);
+  state.add_sigma(FilterState::kYaw, parameters.loosened_yaw_sigma_rad);
+}
+
+void widen_pose(const TrackerParameters& parameters, FilterState& state) {
+  state.add_sigma(FilterState::kX, parameters.widened_position_sigma_m);
+  state.add_sigma(FilterState::kY, parameters.widened_position_sigma_m);
+  state.add_sigma(FilterState::kYaw, parameters.widened_yaw_sigma_rad);
+}
+
 }  // namespace
 
 std::string_view name_of(TrackerUpdate update) {
@@ -196,6 +208,7 @@ TrackerUpdate Tracker::initialise(Time time, GnssPose gnss) {
   event.state = state_from(event.measurement, square_of(parameters_.initial_speed_scale_sigma),
                            square_of(parameters_.initial_yaw_rate_bias_sigma_radps));
   history_.push_back(event);
+  begun_ = time;
   if (last_odometry_->time > time) {
     insert(1, {.time = last_odometry_->time,
                .kind = TrackerEvent::Kind::kOdometry,
@@ -206,7 +219,9 @@ TrackerUpdate Tracker::initialise(Time time, GnssPose gnss) {
 
 TrackerUpdate Tracker::add_pose(Time time, PoseMeasurement measurement, Trust trust) {
   const size_t events_until = position_of(time);
-  if (events_until == 0) return TrackerUpdate::kTooOld;
+  if (events_until == 0) {
+    return time < begun_ ? TrackerUpdate::kNotInitialised : TrackerUpdate::kTooOld;
+  }
   const MeasuredMotion motion = motion_at(time, events_until);
   const bool is_match = measurement.source == PoseSource::kMatch;
   const FilterState state = state_at(time, events_until);
@@ -292,22 +307,18 @@ void Tracker::replay_from(size_t position) {
     event.state = before.state;
     predict(between(before.motion, event.motion, 0.5), to_seconds(event.time - before.time),
             parameters_.motion, parameters_.correlation, event.state);
-    if (event.kind == TrackerEvent::Kind::kPose) update(event.measurement, event.state);
-    if (event.kind == TrackerEvent::Kind::kLoosen) {
-      event.state.covariance(FilterState::kSpeedScale, FilterState::kSpeedScale) +=
-          square_of(parameters_.initial_speed_scale_sigma);
-      event.state.covariance(FilterState::kYawRateBias, FilterState::kYawRateBias) +=
-          square_of(parameters_.loosened_yaw_rate_bias_sigma_radps);
-      event.state.covariance(FilterState::kYaw, FilterState::kYaw) +=
-          square_of(parameters_.loosened_yaw_sigma_rad);
-    }
-    if (event.kind == TrackerEvent::Kind::kWiden) {
-      event.state.covariance(FilterState::kX, FilterState::kX) +=
-          square_of(parameters_.widened_position_sigma_m);
-      event.state.covariance(FilterState::kY, FilterState::kY) +=
-          square_of(parameters_.widened_position_sigma_m);
-      event.state.covariance(FilterState::kYaw, FilterState::kYaw) +=
-          square_of(parameters_.widened_yaw_sigma_rad);
+    switch (event.kind) {
+      case TrackerEvent::Kind::kOdometry:
+        break;
+      case TrackerEvent::Kind::kPose:
+        update(event.measurement, event.state);
+        break;
+      case TrackerEvent::Kind::kLoosen:
+        loosen_odometry_errors(parameters_, event.state);
+        break;
+      case TrackerEvent::Kind::kWiden:
+        widen_pose(parameters_, event.state);
+        break;
     }
   }
 }

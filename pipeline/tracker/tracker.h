@@ -69,7 +69,7 @@ enum class TrackerUpdate {
   kTooOld,          ///< older than the history
   kOutOfOrder,      ///< odometry that is not newer than the last odometry sample
   kNoOdometry,      ///< the last odometry sample is too old, or there is none
-  kNotInitialised,  ///< no GNSS sample yet
+  kNotInitialised,  ///< no GNSS sample yet, or older than the first pose
   kNoHeading,       ///< a GNSS position whose heading is not known yet, before the first pose
   kNotFinite,       ///< a value is NaN or infinite
   kImplausible,     ///< a value is beyond its physical limit
@@ -178,6 +178,7 @@ class Tracker {
 
   TrackerParameters parameters_;
   EventHistory history_;
+  Time begun_;  ///< time of the first pose since the start or restart
   std::optional<OdometrySample> last_odometry_;
   PoseInnovation latest_innovation_;
   int refused_matches_ = 0;  ///< number in a row, up to the latest match

@@ -57,6 +57,27 @@ TEST(GeoReference, HeadingsAccountForMeridianConvergence) {
       << "the meridians converge, so true north is to the left of map north";
 }
 
+/// The conversion that docs/can.md and the comment of Heading give to consumers.
+TEST(GeoReference, TheHeadingInTheMapFollowsFromLongitudeAndLatitude) {
+  for (const GeodeticPosition origin :
+       {kKarlsruhe, GeodeticPosition{65.0, 25.0}, GeodeticPosition{-33.9, 151.2}}) {
+    GeoReference geo(origin);
+    for (const double x_m : {-50000.0, 50000.0}) {
+      for (const double y_m : {-50000.0, 0.0, 50000.0}) {
+        for (const double yaw_rad : {-2.0, 0.0, 0.5, 2.5}) {
+          const GeodeticPose pose = geo.geodetic_from_map({x_m, y_m, yaw_rad});
+          const double turned_deg = (pose.position.longitude_deg - origin.longitude_deg) *
+                                    std::sin(radians(pose.position.latitude_deg));
+          EXPECT_GT(std::abs(turned_deg), 0.25);
+          const double from_map_north_deg = 90.0 - degrees(yaw_rad);
+          EXPECT_NEAR(std::remainder(pose.heading_deg - turned_deg - from_map_north_deg, 360.0),
+                      0.0, 5e-3);
+        }
+      }
+    }
+  }
+}
+
 TEST(GeoReference, RoundTripsAcrossAWholeCity) {
   for (const GeodeticPosition origin :
        {kKarlsruhe, GeodeticPosition{0.0, 0.0}, GeodeticPosition{-33.9, 151.2},

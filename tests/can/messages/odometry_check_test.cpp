@@ -143,6 +143,14 @@ TEST_F(OdometryCheckTest, ANewLevelIsUsedAfterItHasSettled) {
   EXPECT_NEAR(refused, 125, 2) << "2.5 s";
 }
 
+TEST_F(OdometryCheckTest, AfterAGapAnySpeedIsPlausible) {
+  EXPECT_EQ(drive(12.0, 0.0, seconds(1)), 0);
+  EXPECT_EQ(judge(at(6.0, 0.0)), OdometryVerdict::kSpeedJump);
+  check_.note_gap();
+  EXPECT_EQ(drive(6.0, 0.0, seconds(1)), 0);
+  EXPECT_EQ(judge(at(12.0, 0.0)), OdometryVerdict::kSpeedJump) << "jumps after the gap count";
+}
+
 TEST_F(OdometryCheckTest, OneWildSampleIsRefusedAlone) {
   EXPECT_EQ(drive(10.0, 0.0, seconds(1)), 0);
   EXPECT_EQ(judge(at(60.0, 0.0)), OdometryVerdict::kSpeedJump);

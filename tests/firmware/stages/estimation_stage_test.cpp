@@ -129,6 +129,25 @@ TEST_F(EstimationStageTest, APoseThatStartedAgainNeedsNewMatches) {
   EXPECT_TRUE(why().has(Why::kPoseStale));
 }
 
+/// Their frames were exposed before the first GNSS sample of the new pose.
+TEST_F(EstimationStageTest, MatchesFromBeforeANewPoseAreNeitherTooOldNorRefused) {
+  run(milliseconds(3000));
+  vision_ = false;
+  run(milliseconds(1000));
+  gnss_north_m_ = 30.0;
+  const auto has_started_again = [this] { return why().has(Why::kNoInitialPose); };
+  for (int i = 0; i < 500 && !has_started_again(); ++i) run(milliseconds(10));
+  ASSERT_TRUE(has_started_again());
+  const Time before = now_ - milliseconds(10);
+  run(milliseconds(110));
+  ASSERT_FALSE(why().has(Why::kNoInitialPose));
+  for (int i = 5; i > 0; --i) push_report(before - i * milliseconds(5));
+  run(milliseconds(10));
+  EXPECT_EQ(corrections(TrackerUpdate::kTooOld), 0U);
+  EXPECT_GT(corrections(TrackerUpdate::kNotInitialised), 0U) << "the mean score is high enough";
+  EXPECT_FALSE(why().has(Why::kMatchRejected));
+}
+
 TEST_F(EstimationStageTest, ReportsThatVisionSkipsFramesets) {
   run(milliseconds(5000));
   EXPECT_EQ(stage_.counters().why, 0);

@@ -181,11 +181,36 @@ TEST(VehicleInputStageTest, DropsPositionsOfTheBusWithGpsd) {
            encoder.gnss({.time = now, .sigma_east_m = 1.0, .sigma_north_m = 1.0})) {
         vehicle->send(frame, now);
       }
-      stage.step(Duration::zero());
+      stage.step(drivers::VirtualClock(now), Duration::zero());
     }
     EXPECT_GT(stage.counters().gnss_samples, 0U);
     EXPECT_EQ(samples.pop(Duration::zero()).has_value(), !with_gpsd);
   }
+}
+
+TEST(VehicleInputStageTest, UsesTheNewSpeedAfterASuspension) {
+  can::MockWire wire;
+  const auto vehicle = wire.connect();
+  const auto localizer = wire.connect();
+  VehicleQueue samples(8);
+  VehicleInputStage stage(
+      *localizer, std::make_unique<can::VehicleInput>(can::BaseIds{}, kMapOrigin, 1.6), samples);
+  can::VehicleEncoder encoder(can::BaseIds{}, kMapOrigin, 1.6);
+  drivers::VirtualClock clock;
+  const auto drive = [&](double speed_mps) {
+    for (int i = 0; i < 10; ++i) {
+      clock.advance(milliseconds(20));
+      for (const can::Frame& frame : encoder.odometry({.speed_mps = speed_mps})) {
+        vehicle->send(frame, clock.now());
+      }
+      stage.step(clock, Duration::zero());
+    }
+  };
+  drive(12.0);
+  clock.suspend(seconds(3));
+  drive(6.0);
+  EXPECT_EQ(stage.counters().odometry_samples, 20U);
+  EXPECT_EQ(stage.why(clock.now()), WhyMask{});
 }
 
 }  // namespace

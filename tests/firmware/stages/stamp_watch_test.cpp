@@ -109,5 +109,15 @@ TEST_F(StampWatchTest, AJumpBackCountsAfterBendsOverruledTheJump) {
   EXPECT_FALSE(watch_.contradicts()) << "bends show that they are right";
 }
 
+TEST_F(StampWatchTest, AGapKeepsWhatBendsFoundAboutAJump) {
+  jump_to_right_stamps();
+  watch_.note_gap();
+  report(0.0);
+  EXPECT_FALSE(watch_.contradicts()) << "the stamps are still right";
+  jump_back();
+  report(0.1);
+  EXPECT_TRUE(watch_.contradicts()) << "the stamps from before the jump were wrong";
+}
+
 }  // namespace
 }  // namespace bevloc::firmware

@@ -6,9 +6,9 @@
 
 #include <gmock/gmock.h>
 
-#include "common/files.h"
 #include "tests/firmware/log_capture.h"
 #include "tests/firmware/stages/vision_stage_fixture.h"
+#include "tests/pipeline/network/damaged_model.h"
 #include "tests/pipeline/preprocessing/camera_images.h"
 #include "tests/support/temporary_folder.h"
 
@@ -119,6 +119,42 @@ TEST_F(VisionStageTest, HalfOfTheCamerasAreNotMost) {
     EXPECT_FALSE(right->stamps_jumped);
     EXPECT_EQ(right->present, CameraMask(0b111000U));
     EXPECT_EQ(stage_->counters().stamps_jumped, 0b000111U);
+  }
+}
+
+/// The stamps jump ahead of the clock, or before the frames that came before, so that no frameset
+/// has the frames.
+TEST_F(VisionStageTest, ReportsStampsThatJumpedOutOfEveryFrameset) {
+  for (const Duration jump : {Duration(milliseconds(100)), Duration(milliseconds(-500))}) {
+    stage_.emplace(*localizer_, VisionConfig{}, frames_, predictions_, reports_);
+    push_frameset(clock_.now() - milliseconds(60));
+    ASSERT_FALSE(step()->stamps_jumped);
+    int reports = 0;
+    for (int k = 0; k < 10; ++k) {
+      clock_.advance(milliseconds(100));
+      for (int camera = 0; camera < kCameraCount; ++camera) {
+        drivers::Frame frame;
+        frame.camera = camera;
+        frame.stamp_jumped = true;
+        frame.stamp_jumps = 1;
+        frame.time = clock_.now() - milliseconds(60) + jump;
+        if (jump < Duration::zero()) frame.time -= k * milliseconds(100);
+        frames_.push(std::move(frame));
+      }
+      const auto report = step();
+      if (!report) continue;
+      EXPECT_TRUE(report->stamps_jumped);
+      EXPECT_EQ(report->stamp_jumps, 1U);
+      EXPECT_TRUE(report->present.none());
+      ++reports;
+    }
+    EXPECT_EQ(reports, 5) << "one every 200 ms";
+    EXPECT_EQ(stage_->counters().stamps_jumped, 0b111111U);
+    push_frameset(clock_.now() - milliseconds(60));
+    const auto back = step();
+    ASSERT_TRUE(back);
+    EXPECT_FALSE(back->stamps_jumped);
+    EXPECT_TRUE(back->present.all());
   }
 }
 
@@ -295,14 +331,8 @@ TEST_F(VisionStageFrozenTest, ChecksTheNetworkAtTheStartAndOnceAMinuteWhileStand
 }
 
 TEST_F(VisionStageFrozenTest, MatchesNothingWithADamagedNetwork) {
-  std::string bytes = read_file(std::string(BEVLOC_SOURCE_DIR) + "/models/nano.onnx").value();
-  for (size_t i = 0; i < 4096; ++i) {
-    char& byte = bytes[bytes.size() / 2 + i];
-    byte = static_cast<char>(byte ^ 0x20);
-  }
   const test::TemporaryFolder folder;
-  const auto path = folder / "damaged.onnx";
-  ASSERT_TRUE(write_file(path, bytes));
+  const auto path = test::damaged_model(folder);
   localizer_ = Localizer::create(sim::nominal_rig(), map_index_, path.string(), {}).value();
   stage_.emplace(*localizer_, VisionConfig{}, frames_, predictions_, reports_);
   const auto early = step();

@@ -54,6 +54,43 @@ TEST_F(ArbiterTest, BlamesDeadReckoningThatMatchAndGnssContradict) {
   EXPECT_FALSE(verdict.match_contradicts || verdict.gnss_contradicts);
 }
 
+/// A match takes time, so GNSS samples that are newer than its frame come before it.
+class LateMatchTest : public ArbiterTest {
+ protected:
+  LateMatchTest() { run(20, none_, none_); }
+
+  Verdict step_late(const PoseInnovation& match, const PoseInnovation& gnss) {
+    const Time frame = now_ + milliseconds(50);
+    now_ += milliseconds(100);
+    arbiter_.add_gnss(now_, gnss, gnss.squared_distance < kGate, GnssError{none_, yaw_rad_});
+    arbiter_.add_match(frame, match, match.squared_distance < kGate);
+    return arbiter_.judge(now_, PoseStanding::kValid);
+  }
+};
+
+/// The offset of an earlier match says nothing about the later dispute.
+TEST_F(LateMatchTest, AnEarlierDisputeDoesNotDecideALaterOne) {
+  EXPECT_TRUE(step_late(innovation({0.0, -3.0, 0.0}), innovation(none_)).match_contradicts);
+  for (int i = 0; i < 40; ++i) step_late(innovation(none_), innovation(none_));
+  ASSERT_TRUE(arbiter_.trusts_match());
+  now_ += std::chrono::seconds(3);
+  PoseInnovation gnss = innovation({0.0, 1.2, 0.0});
+  gnss.covariance = Eigen::Vector3d(0.3, 0.3, 1e-4).asDiagonal();
+  gnss.squared_distance = 4.8;
+  for (int i = 0; i < 12; ++i) {
+    const Verdict verdict = step_late(innovation({0.0, 1.2, 0.0}), gnss);
+    EXPECT_FALSE(verdict.match_contradicts) << i << ": GNSS is where the match is";
+  }
+}
+
+TEST_F(LateMatchTest, GnssBetweenFrameAndMatchDecidesToo) {
+  now_ += std::chrono::seconds(3);
+  const PoseInnovation both = innovation({0.0, 2.0, 0.0});
+  step_late(both, both);
+  EXPECT_TRUE(step_late(both, both).undecided) << "two samples are too few";
+  EXPECT_TRUE(step_late(both, both).odometry_contradicts);
+}
+
 TEST_F(ArbiterTest, BlamesGnssThatMatchAndDeadReckoningContradict) {
   run(20, none_, none_);
   const Verdict verdict = run(6, none_, {0.0, 20.0, 0.0});
@@ -88,6 +125,16 @@ TEST_F(BlindMatchTest, DoesNotExcludeGnssThatIsRefusedAlongTheRoad) {
   EXPECT_TRUE(arbiter_.trusts_gnss());
   ASSERT_TRUE(arbiter_.open_dispute());
   EXPECT_GT(arbiter_.open_dispute()->x(), 1.0) << "the pose may be where GNSS says";
+}
+
+TEST_F(BlindMatchTest, GnssThatSendsNothingDisputesNothing) {
+  see_nothing_along(3, 1.0);
+  ASSERT_TRUE(see_nothing_along(6, 1.4).undecided);
+  now_ += std::chrono::seconds(3);
+  EXPECT_FALSE(arbiter_.judge(now_, PoseStanding::kValid).undecided);
+  EXPECT_FALSE(arbiter_.open_dispute());
+  EXPECT_FALSE(see_nothing_along(4, 1.4).undecided) << "the refusals count anew";
+  EXPECT_TRUE(see_nothing_along(1, 1.4).undecided);
 }
 
 TEST_F(BlindMatchTest, ExcludesGnssThatJumpsAlongTheRoad) {

@@ -5,57 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/pipeline/tracker/simulated_vehicle.h"
+#include "tests/pipeline/tracker/pose_estimator_fixture.h"
 
 namespace bevloc {
 namespace {
 
-/// A pose that matches have confirmed for 10 s.
-class PoseEstimatorTest : public testing::Test {
- protected:
-  PoseEstimatorTest() {
-    for (int i = 0; i < 500; ++i) step();
-  }
-
-  void step(double gnss_beside_m = 0.0) {
-    time_s_ += 0.02;
-    vehicle_.drive_to(time_s_);
-    estimator_.add(vehicle_.odometry(time_s_));
-    if (++steps_ % 5 != 0) return;
-    GnssSample gnss = vehicle_.gnss();
-    gnss.north_m += gnss_beside_m;
-    if (has_gnss_) estimator_.add(gnss);
-    match_with({});
-    estimator_.judge(at_s(time_s_), true);
-  }
-
-  /// A match at the true pose but for `offset`, in the vehicle frame.
-  MatchResult match_at(const Se2& prior, const Se2& offset) {
-    MatchResult match = vehicle_.correction_from(prior);
-    match.correction = match.correction * offset;
-    match.score = 0.4;
-    match.axis_score.setOnes();
-    return match;
-  }
-  TrackerUpdate match_with(const Se2& offset, double yaw_edge_mass = 0.0) {
-    const Se2 prior = estimator_.pose_at(at_s(time_s_))->map_from_vehicle;
-    MatchResult match = match_at(prior, offset);
-    match.edge_mass.z() = yaw_edge_mass;
-    return estimator_.add_match(at_s(time_s_), prior, match).update;
-  }
-  double yaw_sigma_rad() const {
-    return std::sqrt(estimator_.tracker().pose_at(at_s(time_s_))->covariance(2, 2));
-  }
-
-  SimulatedVehicle vehicle_{{.gnss_position_sigma_m = 1.0,
-                             .gnss_yaw_sigma_rad = radians(1.0),
-                             .gnss_correlation_s = 40.0},
-                            1};
-  PoseEstimator estimator_{TrackerParameters()};
-  double time_s_ = 0.0;
-  int steps_ = 0;
-  bool has_gnss_ = true;
-};
+using test::PoseEstimatorTest;
 
 TEST_F(PoseEstimatorTest, AMatchAtTheBorderDoesNotCorrectThePose) {
   const double before_rad = yaw_sigma_rad();
