@@ -36,6 +36,12 @@ struct BusCounters {
   uint64_t reopened = 0;          ///< number of times that a lost interface was found again
   Duration confirmation_total{};  ///< time from send() to the wire, summed over confirmed frames
   Duration confirmation_max{};    ///< longest time from send() to the wire
+
+  uint64_t send_dropped() const { return send_replaced + send_expired + send_bus_down; }
+  /// Returns 0 if no frame was confirmed.
+  double confirmation_mean_s() const {
+    return confirmed == 0 ? 0.0 : to_seconds(confirmation_total) / static_cast<double>(confirmed);
+  }
 };
 
 /// One endpoint on a CAN bus. Only wait() blocks. Nothing allocates. An endpoint that sends must

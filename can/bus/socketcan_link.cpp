@@ -3,6 +3,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <system_error>
 
 #include <linux/can.h>
@@ -33,11 +34,13 @@ bool set_option(int descriptor, int level, int name, const T& value) {
 /// to pass too.
 std::vector<can_filter> filters_of(const SocketCanOptions& options) {
   if (options.accepted_ids.empty()) return {{.can_id = 0, .can_mask = 0}};
+  std::set<uint32_t> passed;
+  for (const auto* ids : {&options.accepted_ids, &options.confirmed_ids, &options.reserved_ids}) {
+    passed.insert(ids->begin(), ids->end());
+  }
   std::vector<can_filter> filters;
-  for (const auto* ids : {&options.accepted_ids, &options.confirmed_ids}) {
-    for (const uint32_t id : *ids) {
-      filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
-    }
+  for (const uint32_t id : passed) {
+    filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
   }
   return filters;
 }

@@ -22,6 +22,9 @@ struct SocketCanOptions {
   /// this is empty, nothing is confirmed. Frames of other nodes with these identifiers also pass
   /// the filter.
   std::vector<uint32_t> confirmed_ids{};
+  /// Identifiers that no other node may use. They also pass the filter, so that a frame of another
+  /// node is noticed.
+  std::vector<uint32_t> reserved_ids{};
   /// Whether open() refuses a classic interface, because FD frames are to be sent. FD frames are
   /// always received.
   bool fd = false;

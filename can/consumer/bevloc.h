@@ -56,8 +56,8 @@ struct bevloc_pose {
   bool has_capture;     /* whether the pose comes from images */
   uint32_t capture_us;  /* when they were taken, on the localizer's clock, modulo 2^32 */
   double latitude_deg, longitude_deg;
-  double east_m, north_m; /* in the map */
-  double heading_deg;     /* clockwise from true north */
+  double east_m, north_m; /* in the map, along east and north at its origin */
+  double heading_deg;     /* clockwise from true north; for that of the map see Axes in can.md */
   double speed_mps;
   double lateral_m, longitudinal_m, yaw_deg;   /* protection levels */
   bool has_lateral, has_longitudinal, has_yaw; /* false: no protection level of this axis */

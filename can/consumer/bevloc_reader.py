@@ -55,7 +55,7 @@ VALUES = {
     "risk_exponent": ("LOC_Integrity", "IntegrityRiskExponent"),
     "foreign_sender": ("LOC_Integrity", "Why_ForeignSender"),
 }
-"""The values of a pose."""
+"""The values of a pose. heading_deg is from true north, not from the map's (docs/can.md, Axes)."""
 
 LEVELS = ("lateral_m", "longitudinal_m", "yaw_deg")
 """The values that are protection levels. AlertLimits has a limit of the same name for each."""

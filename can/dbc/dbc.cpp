@@ -133,9 +133,7 @@ Result<Dbc> parse_dbc(std::string_view text, const std::string& name) {
 }
 
 Result<Dbc> read_dbc_file(const std::filesystem::path& path) {
-  const Result<std::string> text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  return parse_dbc(*text, path.string());
+  return parse_file(path, parse_dbc);
 }
 
 }  // namespace bevloc::can

@@ -65,10 +65,11 @@ Result<uint32_t> read_start_number(const std::filesystem::path& file) {
   const std::string text = without_end_of_line(std::move(*content));
   const auto number = parse_number<uint32_t>(text);
   if (!number || *number == UINT32_MAX) {
+    // The content stays out of the log: it may be the key, if the configuration mixes up the files.
     return fail(
-        "{}: found '{}', wanted one whole number of starts; write a number larger than every "
-        "number before; a smaller one makes the vehicle refuse all messages",
-        file.string(), text);
+        "{}: found {} bytes that are no number of starts, wanted one whole number; write a number "
+        "larger than every number before; a smaller one makes the vehicle refuse all messages",
+        file.string(), text.size());
   }
   return *number;
 }

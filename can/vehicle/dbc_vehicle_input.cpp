@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "can/vehicle/wheel_fusion.h"
+#include "common/geodetic.h"
 
 namespace bevloc::can {
 namespace {
@@ -101,9 +102,8 @@ VehicleSamples DbcVehicleInput::accept(const ReceivedFrame& received) {
 /// Whether there is a new position, and no heading must be waited for.
 bool DbcVehicleInput::is_fix_complete(Time now) {
   if (position_signals_.empty() || !all_new(position_signals_)) return false;
-  const bool heading_stopped = std::ranges::any_of(heading_signals_, [&](size_t signal) {
-    return is_older(signal, kMostCycles * cycle_of(signal), now);
-  });
+  const bool heading_stopped = std::ranges::any_of(
+      heading_signals_, [&](size_t signal) { return is_older(signal, most_age(signal), now); });
   if (heading_stopped) return !drop_stale(position_signals_, gnss_frames_, now);
   return all_new(heading_signals_) && !drop_stale(gnss_signals_, gnss_frames_, now);
 }
@@ -263,14 +263,15 @@ std::optional<double> DbcVehicleInput::sigma(const std::optional<size_t>& signal
   return std::max({least, step_of(binding_.signals[*signal]), value});
 }
 
-/// Returns nothing if there is no valid heading within four cycles of `time`.
+/// Returns nothing if there is no valid heading, if it has stopped, or if it came too long before
+/// or after `time`.
 std::optional<GeodeticFix::Heading> DbcVehicleInput::heading(Time now, Time time) const {
   const BoundGnss& gnss = *binding_.gnss;
   if (!gnss.heading || !holds(gnss.heading_valid, now).value_or(false)) return std::nullopt;
   const auto is_usable = [&](size_t signal) {
     const Slot& slot = slots_[signal];
-    return slot.available &&
-           std::chrono::abs(slot.received - time) <= kMostCycles * cycle_of(signal);
+    return slot.available && !is_older(signal, most_age(signal), now) &&
+           std::chrono::abs(slot.received - time) <= most_age(signal);
   };
   if (gnss.sigma_heading && !is_usable(*gnss.sigma_heading)) return std::nullopt;
   const auto sigma_deg = sigma(gnss.sigma_heading, gnss.sigma_heading_deg, kLeastSigma_deg);
@@ -288,11 +289,10 @@ std::optional<GnssSample> DbcVehicleInput::gnss(Time now) {
     return std::nullopt;
   }
   const GeodeticPosition position = {slots_[gnss.latitude].value, slots_[gnss.longitude].value};
-  const bool on_earth =
-      std::abs(position.latitude_deg) <= 90.0 && std::abs(position.longitude_deg) <= 180.0;
   const auto sigma_north_m = sigma(gnss.sigma_north, gnss.sigma_m, kLeastSigma_m);
   const auto sigma_east_m = sigma(gnss.sigma_east, gnss.sigma_m, kLeastSigma_m);
-  if (!on_earth || !sigma_north_m || !sigma_east_m) {
+  if (!is_on_earth(position.latitude_deg, position.longitude_deg) || !sigma_north_m ||
+      !sigma_east_m) {
     ++counters_.not_available;
     return std::nullopt;
   }

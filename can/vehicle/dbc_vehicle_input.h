@@ -20,8 +20,8 @@ namespace bevloc::can {
 /// next one. Otherwise, after one lost frame, all later samples would combine values of two cycles.
 /// A condition (valid, backward) may be at most four cycles of its message old. If its signal is
 /// multiplexed, it may be as old as four periods of the signal, but at most 2 s. A GNSS sample does
-/// not wait for a heading that is more than four cycles old, and then has none. One thread. Does
-/// not allocate after construction.
+/// not wait for a heading that is older than that, and then has none. One thread. Does not allocate
+/// after construction.
 class DbcVehicleInput final : public VehicleDecoder {
  public:
   /// `base` has the identifiers of the localizer's own messages. `rear_track_m` is the distance
@@ -30,6 +30,7 @@ class DbcVehicleInput final : public VehicleDecoder {
                   double rear_track_m);
 
   VehicleSamples accept(const ReceivedFrame& received) override;
+  void note_gap() override { maker_.note_gap(); }
   VehicleInputCounters counters() const override;
   VehicleFaultTimes fault_times() const override { return maker_.fault_times(); }
 

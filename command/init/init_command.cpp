@@ -77,7 +77,7 @@ void InitCommand::declare(CLI::App& app) {
   auto* init = app.add_subcommand(
       "init", "Write a configuration for this machine, and check it; asks for what is not given");
   init->add_option("--out", out_, "The configuration to write")
-      ->check(output_file())
+      ->check(replaced_file())
       ->capture_default_str();
   init->add_flag("--force", force_, "Replace a file that exists; the one before is kept as .bak");
   init->add_flag("--yes", yes_, "Ask nothing: take what is proposed");

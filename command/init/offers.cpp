@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "drivers/camera/v4l2/device.h"
 #include "drivers/camera/v4l2/device_finder.h"
 #ifdef BEVLOC_HAS_LIBCAMERA
 #include "drivers/camera/libcamera/libcamera_camera.h"
@@ -12,13 +13,6 @@ namespace bevloc::command {
 namespace {
 
 using drivers::v4l2::VideoNode;
-
-/// Returns the nodes that deliver images. Further nodes of a camera do not.
-std::vector<VideoNode> image_nodes(const Machine& machine) {
-  auto nodes = drivers::v4l2::list_video_nodes({machine.real("/sys"), machine.real("/dev")});
-  std::erase_if(nodes, [](const VideoNode& node) { return node.index != 0; });
-  return nodes;
-}
 
 /// Returns a name of a node that does not change with a restart. If its serial number is that of no
 /// other node, the name stays with the camera when plugs change. Otherwise it belongs to the plug.
@@ -38,7 +32,8 @@ std::string stable_id(const VideoNode& node, bool has_own_serial) {
 
 Offers offers_of(const Machine& machine, const std::vector<std::string>& libcamera_ids) {
   Offers offers;
-  const std::vector<VideoNode> nodes = image_nodes(machine);
+  const std::vector<VideoNode> nodes = drivers::v4l2::list_image_nodes(
+      {machine.real("/sys"), machine.real("/dev"), drivers::v4l2::can_capture});
   for (const VideoNode& node : nodes) {
     const bool has_own_serial =
         !node.serial.empty() && std::ranges::count(nodes, node.serial, &VideoNode::serial) == 1;

@@ -43,6 +43,9 @@ struct CameraCounters {
   /// Frames that were dropped because the device marked them as bad, or because they were
   /// incomplete.
   uint64_t damaged = 0;
+
+  /// Frames that the camera took and the user did not get.
+  uint64_t missed() const { return no_buffer + overrun + lost + damaged; }
 };
 
 /// One camera. Every implementation passes tests/drivers/camera_conformance_test.cpp.

@@ -28,8 +28,9 @@ struct DeviceCameraConfig {
   int buffers = kDefaultFrameBuffers;
   std::vector<ControlSetting> controls;
   Duration exposure{0};
-  /// Time from the end of exposure of the first row to that of the last row. Required for a device
-  /// that stamps the end of the frame, and not used otherwise.
+  /// Time from the end of exposure of the first row to that of the last row. With V4L2, required
+  /// for a device that stamps the end of the frame, and not used otherwise. libcamera does not tell
+  /// what is stamped: if the time is given, it is used.
   std::optional<Duration> readout;
 };
 

@@ -35,7 +35,7 @@ enum class FrameFate : uint8_t {
 };
 
 /// The counters of one camera. Every added frame is either emitted, or still waiting, or counted in
-/// exactly one of duplicate, out_of_order, late, future, overflow and unmatched.
+/// exactly one of the summands of refused().
 struct SynchronizerCounters {
   uint64_t added = 0;
   uint64_t emitted = 0;  ///< frames in an emitted frameset
@@ -47,6 +47,10 @@ struct SynchronizerCounters {
   uint64_t unmatched = 0;   ///< dropped with a frameset that had too few cameras
   uint64_t missing = 0;     ///< framesets that were emitted without this camera
   uint64_t waited_for = 0;  ///< those of `missing` that waited for this camera until the end
+
+  uint64_t refused() const {
+    return duplicate + out_of_order + late + future + overflow + unmatched;
+  }
 };
 
 /// Merges frames by time, driven by add() and poll(). It has no clock and no threads, so the same

@@ -44,7 +44,7 @@ enum class FixVerdict : uint8_t {
   kRepeated,        ///< not newer than the fix before it
   kStale,           ///< older than max_age
   kFuture,          ///< kSystemClock: newer than the system clock permits
-  kUnsynchronized,  ///< kSystemClock: the kernel does not know how far the clock is off
+  kUnsynchronized,  ///< kSystemClock: the clock is not synchronized, or may be too far off
 };
 inline constexpr size_t kFixVerdicts = 6;
 

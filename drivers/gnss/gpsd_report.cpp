@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/geodetic.h"
+
 namespace bevloc::drivers {
 namespace {
 
@@ -33,10 +35,11 @@ bool read_sigma(const Json& report, GnssFix& fix) {
   const auto north = number(report, "epy");
   const auto both = number(report, "eph");
   if (!(east && north) && !both) return false;
-  // eph is the horizontal error. Its north and east parts count as equal.
+  // eph is the horizontal error. Its north and east parts count as equal. A receiver of u-blox
+  // (UBX) states no other error: gpsd then still adds epx and epy, which it guesses.
   const double part_m = both.value_or(0.0) / std::sqrt(2.0);
-  fix.sigma_east_m = east && north ? *east : part_m;
-  fix.sigma_north_m = east && north ? *north : part_m;
+  fix.sigma_east_m = both ? part_m : *east;
+  fix.sigma_north_m = both ? part_m : *north;
   return true;
 }
 
@@ -87,10 +90,9 @@ bool is_possible(const GnssFix& fix) {
   const auto is_sigma = [](double sigma_m) { return sigma_m >= 0.0 && sigma_m < kMostSigma_m; };
   const double speed_mps = fix.speed_mps.value_or(0.0);
   const double course_deg = fix.course_deg.value_or(0.0);
-  return std::abs(fix.latitude_deg) <= 90.0 && std::abs(fix.longitude_deg) <= 180.0 &&
-         is_sigma(fix.sigma_east_m) && is_sigma(fix.sigma_north_m) && speed_mps >= 0.0 &&
-         speed_mps < kMostSpeed_mps && course_deg >= 0.0 && course_deg < 360.0 &&
-         fix.sigma_course_deg >= 0.0;
+  return is_on_earth(fix.latitude_deg, fix.longitude_deg) && is_sigma(fix.sigma_east_m) &&
+         is_sigma(fix.sigma_north_m) && speed_mps >= 0.0 && speed_mps < kMostSpeed_mps &&
+         course_deg >= 0.0 && course_deg < 360.0 && fix.sigma_course_deg >= 0.0;
 }
 
 std::optional<std::chrono::nanoseconds> utc_of(std::string_view text) {

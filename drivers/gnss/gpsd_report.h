@@ -31,7 +31,7 @@ enum class GpsdLine : uint8_t {
   kAccuracy,       ///< standard deviations of the next fixes (GST)
   kOther,          ///< a report of another kind, such as SKY or VERSION
   kNoFix,          ///< a position report without a position (mode below 2)
-  kNoAccuracy,     ///< a position without epx and epy or eph, so nobody knows how good it is
+  kNoAccuracy,     ///< a position without eph or epx and epy, so nobody knows how good it is
   kNoTime,         ///< a position without a time, so nobody knows how old it is
   kNotSatellites,  ///< dead reckoning or a simulation by the receiver
   kOutOfRange,     ///< a value that no receiver can have
@@ -48,10 +48,11 @@ struct GpsdReport {
 ///
 /// The sigma of a fix comes from the receiver's own accuracy report (GST), if three things hold:
 /// the latest GST is from the same receiver, it is at most 1.5 s older than the fix, and mode and
-/// status have not changed since. Otherwise epx and epy, or eph, of the position report (TPV) count
-/// as one sigma. This is cautious: gpsd does not state their confidence level, and many receivers
-/// give the bound of 95 %. If the receiver states no accuracy, gpsd estimates it from the dilution
-/// of precision. One thread.
+/// status have not changed since. Otherwise eph of the position report (TPV), divided over the
+/// axes, counts as one sigma, and epx with epy only if there is no eph: with UBX, eph is the
+/// receiver's own accuracy, and epx and epy are guesses of gpsd. This is cautious: gpsd does not
+/// state the confidence level, and many receivers give the bound of 95 %. If the receiver states no
+/// accuracy, gpsd estimates it from the dilution of precision. One thread.
 class GpsdReader {
  public:
   GpsdReport read(std::string_view line);

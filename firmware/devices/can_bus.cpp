@@ -1,6 +1,7 @@
 #include "firmware/devices/can_bus.h"
 
 #include "can/bus/socketcan_bus.h"
+#include "can/messages/message_table.h"
 #include "can/messages/vehicle_input.h"
 #include "can/publisher/pose_publisher.h"
 #include "can/vehicle/dbc_vehicle_input.h"
@@ -14,6 +15,7 @@ can::SocketCanOptions appliance_options(const CanConfig& config) {
                      : can::VehicleInput::accepted_ids(config.base_ids, config.secoc.has_value());
   options.confirmed_ids = can::PosePublisher::sent_ids(
       config.base_ids, config.variant, config.secoc.has_value(), config.sends_clock);
+  options.reserved_ids = can::localizer_ids(config.base_ids);
   options.fd =
       config.variant == can::FrameFormat::kFd || (config.vehicle && can::needs_fd(*config.vehicle));
   return options;

@@ -11,8 +11,9 @@
 
 namespace bevloc::firmware {
 
-/// The options of the appliance's socket. The kernel's filter passes only the vehicle's messages
-/// and the confirmations of sent frames, so nothing else wakes the CAN-in thread.
+/// The options of the appliance's socket. The kernel's filter passes only the vehicle's messages,
+/// the confirmations of sent frames, and frames of other nodes with an identifier of the localizer,
+/// of either variant, so nothing else wakes the CAN-in thread.
 can::SocketCanOptions appliance_options(const CanConfig& config);
 
 /// Makes the decoder of the vehicle's messages: those of `can.vehicle`, or else bevloc's own.

@@ -3,7 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "can/secoc/secoc_files.h"
-#include "common/writable_folder.h"
+#include "common/output_file.h"
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "firmware/config/config_key.h"
 #include "firmware/config/localizer_options.h"
@@ -14,6 +14,7 @@
 #include "pipeline/map/map_index.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/map/map_summary.h"
+#include "pipeline/preprocessing/view_check.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -33,15 +34,15 @@ Status check_can(const CanConfig& can) {
   return bus ? Status() : tl::unexpected(bus.error());
 }
 
-/// Checks that the daemon can write this file while it runs.
+/// Checks that the daemon can replace this file while it runs.
 Status check_written_file(const char* key, const std::filesystem::path& file) {
   if (file.empty()) return {};
-  const std::error_code error = cannot_write_in(file.parent_path());
-  if (!error) return {};
-  return fail(
-      "{}: {}: cannot be written ({}), wanted a folder that bevlocd may write in, such as "
-      "/var/lib/bevloc",
-      key, file.string(), error.message());
+  // Nobody creates a missing folder, except that systemd creates this one when it first starts
+  // bevlocd (StateDirectory in systemd/bevlocd.service).
+  const bool systemd_creates = folder_of(file) == "/var/lib/bevloc";
+  std::error_code ignored;
+  if (systemd_creates && !std::filesystem::exists(folder_of(file), ignored)) return {};
+  return at_key(key, check_replaceable(file));
 }
 
 /// Makes the localizer that the daemon makes, but without a map, and runs its check of network and
@@ -75,9 +76,17 @@ Status check_secoc(const SecocConfig& secoc) {
 
 }  // namespace
 
+Status check_shown(const Rig& rig, const std::filesystem::path& file) {
+  const auto warning = at_key("calibration.rig", check_views(rig, file.string()));
+  if (!warning) return tl::unexpected(warning.error());
+  if (!warning->empty()) spdlog::warn("calibration.rig: {}", *warning);
+  return {};
+}
+
 Status check_config(const Config& config) {
   const auto rig = at_key("calibration.rig", read_rig(config.rig_file));
   if (!rig) return tl::unexpected(rig.error());
+  if (Status shown = check_shown(*rig, config.rig_file); !shown) return shown;
   const Status model = at_key("model.file", check_model(config, *rig));
   if (!model) return model;
   if (!config.map_file.empty()) {

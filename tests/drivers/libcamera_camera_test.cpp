@@ -54,12 +54,12 @@ TEST(LibcameraCamera, LibcameraKeepsRunningWhileACameraIsAbsent) {
   EXPECT_EQ(added(before, thread_numbers()), first);
 }
 
-TEST(LibcameraCamera, SaysThatAReadoutTimeIsNotUsed) {
+TEST(LibcameraCamera, UsesAReadoutTime) {
   MonotonicClock clock;
   DeviceCameraConfig config = absent_camera();
   EXPECT_FALSE(LibcameraCamera(config, clock).description().ignores_readout);
   config.readout = std::chrono::milliseconds(20);
-  EXPECT_TRUE(LibcameraCamera(config, clock).description().ignores_readout);
+  EXPECT_FALSE(LibcameraCamera(config, clock).description().ignores_readout);
 }
 
 /// libcamera ends the process if two of its managers exist at the same time.

@@ -30,5 +30,11 @@ TEST(SensorTime, WithoutSuspensionBothClocksAgree) {
   EXPECT_EQ(steady_time(nanoseconds_of(exposed), kNow, Duration::zero()), exposed);
 }
 
+TEST(SensorTime, ReadoutAndExposureAreSubtractedIfTheReadoutIsGiven) {
+  EXPECT_EQ(exposure_start(kNow, milliseconds(8), milliseconds(25)), kNow - milliseconds(33));
+  EXPECT_EQ(exposure_start(kNow, milliseconds(8), milliseconds(0)), kNow - milliseconds(8));
+  EXPECT_EQ(exposure_start(kNow, milliseconds(8), std::nullopt), kNow);
+}
+
 }  // namespace
 }  // namespace bevloc::drivers::libcam

@@ -69,7 +69,9 @@ TEST(ReplayCamera, StartFailsWithoutARecording) {
   ReplayCamera camera(config_for(empty), clock);
   const Status started = camera.start();
   ASSERT_FALSE(started);
-  EXPECT_THAT(started.error().message, HasSubstr("frames.txt: found no readable file"));
+  EXPECT_THAT(
+      started.error().message,
+      HasSubstr("frames.txt: found no readable file, wanted the index of a picture folder"));
 }
 
 TEST(ReplayCamera, PlaysImagesAtTheirShiftedTimes) {

@@ -92,6 +92,38 @@ TEST_F(DeviceFinder, ListsTheDevicesWhenItFindsNone) {
   }
 }
 
+/// The nodes of the cameras that share the receiver of a Jetson.
+TEST_F(DeviceFinder, ListsAllCamerasOfOneReceiver) {
+  const fs::path receiver = tree_.sysfs / "devices/platform/tegra-capture-vi";
+  add_node(0, 0, "vi-output, isx031 30-001a", receiver);
+  add_node(1, 1, "vi-output, isx031 30-001b", receiver);
+  const std::string error = found("SN9");
+  EXPECT_NE(error.find("30-001a"), std::string::npos) << error;
+  EXPECT_NE(error.find("30-001b"), std::string::npos) << error;
+  EXPECT_EQ(found("vi-output, isx031 30-001b"), "video1");
+}
+
+TEST_F(DeviceFinder, CountsTheNodesOfAUsbCameraAsOne) {
+  add_usb_camera(0, "1-2", "SN7");
+  const std::vector<VideoNode> nodes = list_image_nodes(tree_);
+  ASSERT_EQ(nodes.size(), 1U);
+  EXPECT_EQ(nodes[0].node.filename(), "video0");
+}
+
+TEST_F(DeviceFinder, LeavesOutNodesThatSayThatTheyDeliverNoImages) {
+  add_node(0, 0, "bcm2835-codec-decode", tree_.sysfs / "devices/platform/codec");
+  add_node(1, 0, "HD Camera", tree_.sysfs / "devices/pci/usb1/1-2");
+  add_node(2, 1, "HD Camera", tree_.sysfs / "devices/pci/usb1/1-2");
+  add_node(3, 0, "csi-bridge", tree_.sysfs / "devices/platform/csi0");
+  tree_.can_capture = [](const fs::path& node) -> std::optional<bool> {
+    if (node.filename() == "video3") return std::nullopt;
+    return node.filename() != "video0";
+  };
+  std::vector<std::string> names;
+  for (const VideoNode& node : list_image_nodes(tree_)) names.push_back(node.node.filename());
+  EXPECT_EQ(names, (std::vector<std::string>{"video1", "video2", "video3"}));
+}
+
 TEST_F(DeviceFinder, RefusesNumbers) {
   add_usb_camera(0, "1-2", "SN7");
   EXPECT_NE(found("/dev/video0").find("another camera after the next boot"), std::string::npos);

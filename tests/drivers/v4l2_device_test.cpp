@@ -32,5 +32,10 @@ TEST(V4l2Device, ANodeThatIsAbsentIsAnError) {
   EXPECT_EQ(device.error().message, open_error("/dev/bevloc-no-such-video", ENOENT));
 }
 
+TEST(V4l2Device, ANodeThatDoesNotAnswerDoesNotSayWhetherItCaptures) {
+  EXPECT_EQ(can_capture("/dev/bevloc-no-such-video"), std::nullopt);
+  EXPECT_EQ(can_capture("/dev/null"), std::nullopt);
+}
+
 }  // namespace
 }  // namespace bevloc::drivers::v4l2

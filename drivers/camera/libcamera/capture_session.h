@@ -34,7 +34,7 @@ class CaptureSession final : public FrameLender,
   Event wait(Duration timeout, int& slot);
 
   const libcamera::FrameMetadata& frame_metadata(int slot) const;
-  /// Returns the start of exposure of the first row, if libcamera reports it.
+  /// Returns the time stamp that the pipeline passes on, if libcamera reports one (sensor_time.h).
   std::optional<int64_t> sensor_timestamp_ns(int slot) const;
   /// Returns the image in a completed request, with its bytes_used.
   ImageView view(int slot) const;

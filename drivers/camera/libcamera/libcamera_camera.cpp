@@ -112,15 +112,15 @@ bool LibcameraCamera::take(int slot, Frame& frame) {
     session_->requeue(slot);
     return false;
   }
-  const Time time = libcam::steady_time(*timestamp_ns, clock_.now(), clock_.suspended());
+  const Time stamp = libcam::steady_time(*timestamp_ns, clock_.now(), clock_.suspended());
+  const Time time = libcam::exposure_start(stamp, config_.exposure, config_.readout);
   frame = Frame{config_.camera, time, sequence, config_.exposure, session_->lend(slot)};
   counter_.delivered(session_->lent() == session_->buffers());
   return true;
 }
 
 CameraDescription LibcameraCamera::description() const {
-  const bool ignores_readout = config_.readout.has_value();
-  return {config_.camera, config_.width_px, config_.height_px, buffers_, ignores_readout};
+  return {config_.camera, config_.width_px, config_.height_px, buffers_};
 }
 
 }  // namespace bevloc::drivers

@@ -27,8 +27,9 @@ std::vector<std::string> libcamera_ids();
 /// again. Each start() looks for the camera by its `id`, as `cam -l` shows it. Controls have
 /// libcamera's names (AeEnable, ExposureTime in microseconds, AnalogueGain). The rate is set if the
 /// camera has the control FrameDurationLimits. USB cameras do not have it and keep their own rate.
-/// From the first start() on, libcamera runs until all cameras are destroyed. It notices by udev
-/// which cameras are plugged in.
+/// If `readout` is given, exposure and readout are subtracted from each time stamp. From the first
+/// start() on, libcamera runs until all cameras are destroyed. It notices by udev which cameras are
+/// plugged in.
 class LibcameraCamera final : public Camera {
  public:
   /// `clock` must be a MonotonicClock, because libcamera's time stamps are compared with it.

@@ -1,7 +1,8 @@
-// Converts libcamera's SensorTimestamp to the steady clock.
+// Converts libcamera's SensorTimestamp to the start of exposure, on the steady clock.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "common/time.h"
 
@@ -14,6 +15,14 @@ namespace bevloc::drivers::libcam {
 constexpr Time steady_time(int64_t sensor_timestamp_ns, Time now, Duration suspended) {
   const Time stamp{Duration(sensor_timestamp_ns)};
   return stamp > now ? stamp - suspended : stamp;
+}
+
+/// libcamera's documentation says that the stamp is the start of exposure. But its pipelines pass
+/// on the kernel's stamp of the buffer, often that of the end of the frame, and do not say which.
+/// So `readout` decides: with it, the stamp counts as later by exposure and readout; without it,
+/// the stamp counts as the start of exposure.
+constexpr Time exposure_start(Time stamp, Duration exposure, std::optional<Duration> readout) {
+  return readout ? stamp - exposure - *readout : stamp;
 }
 
 }  // namespace bevloc::drivers::libcam

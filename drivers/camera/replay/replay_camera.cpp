@@ -24,7 +24,7 @@ Result<RecordedFrame> parse_line(const std::string& line, const std::string& pla
   std::string name;
   std::string surplus;
   if (!(words >> sequence >> time_ns >> name) || words >> surplus || sequence < 0) {
-    return fail("{}: found \"{}\", wanted `sequence time_ns file`", place, line);
+    return fail("{}: found \"{}\", wanted `sequence time_ns file`", place, line.substr(0, 80));
   }
   RecordedFrame frame{static_cast<uint64_t>(sequence), Time(Duration(time_ns)), directory / name};
   std::error_code ignored;
@@ -39,7 +39,9 @@ Result<RecordedFrame> parse_line(const std::string& line, const std::string& pla
 Result<std::vector<RecordedFrame>> load_recording(const std::filesystem::path& directory) {
   const std::string index = (directory / kFrameIndex).string();
   std::ifstream file(index);
-  if (!file) return fail("{}: found no readable file, wanted the index of a recording", index);
+  if (!file) {
+    return fail("{}: found no readable file, wanted the index of a picture folder", index);
+  }
   std::vector<RecordedFrame> recording;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {

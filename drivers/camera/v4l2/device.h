@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,10 @@ namespace bevloc::drivers::v4l2 {
 
 /// Returns the message for a device that open() refused with this errno.
 std::string open_error(const std::filesystem::path& node, int error);
+
+/// Whether the device can capture single-plane video by streaming. Opens it for a moment. Returns
+/// nothing if it cannot be opened or does not answer.
+std::optional<bool> can_capture(const std::filesystem::path& node);
 
 /// The destructor closes the device. Thread-safe, because the calls of the kernel are.
 class Device {

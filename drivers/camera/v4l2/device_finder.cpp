@@ -65,11 +65,16 @@ bool is_called(const VideoNode& node, std::string_view id) {
          std::ranges::find(node.links, id) != node.links.end();
 }
 
-/// Lists all names of all devices, for the error message.
-std::string names_of(const std::vector<VideoNode>& nodes) {
+bool has_earlier_twin(const VideoNode& node, const std::vector<VideoNode>& nodes) {
+  return std::ranges::any_of(nodes, [&node](const VideoNode& other) {
+    return other.device == node.device && other.card == node.card && other.index < node.index;
+  });
+}
+
+/// Lists all names of all cameras, for the error message.
+std::string names_of(const std::vector<VideoNode>& image_nodes) {
   std::string text;
-  for (const VideoNode& node : nodes) {
-    if (node.index != 0) continue;
+  for (const VideoNode& node : image_nodes) {
     text += fmt::format("{}card \"{}\"", text.empty() ? "" : "; ", node.card);
     if (!node.serial.empty()) text += fmt::format(", serial \"{}\"", node.serial);
     if (!node.port.empty()) text += fmt::format(", USB port \"{}\"", node.port);
@@ -94,6 +99,16 @@ std::vector<VideoNode> list_video_nodes(const DeviceTree& tree) {
   return nodes;
 }
 
+std::vector<VideoNode> list_image_nodes(const DeviceTree& tree) {
+  const std::vector<VideoNode> nodes = list_video_nodes(tree);
+  std::vector<VideoNode> image_nodes;
+  for (const VideoNode& node : nodes) {
+    const auto answer = tree.can_capture ? tree.can_capture(node.node) : std::nullopt;
+    if (answer.value_or(!has_earlier_twin(node, nodes))) image_nodes.push_back(node);
+  }
+  return image_nodes;
+}
+
 Result<fs::path> find_video_node(std::string_view id, const DeviceTree& tree) {
   if (id.starts_with("/dev/video")) {
     return fail(
@@ -109,12 +124,13 @@ Result<fs::path> find_video_node(std::string_view id, const DeviceTree& tree) {
   for (const VideoNode& node : nodes) {
     if (!is_called(node, id)) continue;
     if (found != nullptr && found->device != node.device) {
-      return fail("several cameras are called \"{}\"; available: {}", id, names_of(nodes));
+      return fail("several cameras are called \"{}\"; available: {}", id,
+                  names_of(list_image_nodes(tree)));
     }
     if (found == nullptr || node.index < found->index) found = &node;
   }
   if (found == nullptr) {
-    return fail("no camera is called \"{}\"; available: {}", id, names_of(nodes));
+    return fail("no camera is called \"{}\"; available: {}", id, names_of(list_image_nodes(tree)));
   }
   return found->node;
 }

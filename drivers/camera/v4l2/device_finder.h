@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,18 +12,21 @@
 
 namespace bevloc::drivers::v4l2 {
 
-/// The folders in which the kernel and udev show devices. Tests use their own.
+/// Where the kernel and udev show devices. Tests use their own.
 struct DeviceTree {
   std::filesystem::path sysfs = "/sys";
   std::filesystem::path dev = "/dev";
+  /// Asks a node whether it delivers images, as can_capture() does. Empty to open no node: a daemon
+  /// that waits for a camera must not open others again and again, because some receivers switch
+  /// their sensor on and off with that.
+  std::function<std::optional<bool>(const std::filesystem::path& node)> can_capture{};
 };
 
 /// One video node and its names.
 struct VideoNode {
   std::filesystem::path node;
-  /// Number among the nodes of one device. Node 0 of a USB camera delivers the images.
-  int index = 0;
-  std::string device;  ///< sysfs path of the node's device
+  int index = 0;       ///< number among the nodes of one device
+  std::string device;  ///< sysfs path of the node's device, which may have several cameras
   std::string card;    ///< such as "HD USB Camera"
   std::string serial;  ///< serial number of a USB device; empty if it has none
   std::string port;    ///< USB port: "1-4.2" is bus 1, port 4 of the root hub, port 2 of a hub
@@ -30,6 +35,12 @@ struct VideoNode {
 
 /// Lists all video nodes in the order of their numbers.
 std::vector<VideoNode> list_video_nodes(const DeviceTree& tree = {});
+
+/// Lists the nodes that deliver images, in the order of their numbers. Decides by
+/// tree.can_capture(). A node that does not answer counts, unless a node of the same device with a
+/// lower index has the same card name: that is how a USB camera shows its metadata, whereas cameras
+/// that share a receiver have card names of their own.
+std::vector<VideoNode> list_image_nodes(const DeviceTree& tree = {});
 
 /// Returns the node whose by-id or by-path name, USB serial number, USB port or card name is `id`.
 /// If several nodes of one device match, returns the first one. Fails when no device or more than

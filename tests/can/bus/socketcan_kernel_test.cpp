@@ -84,6 +84,18 @@ TEST_F(SocketCanKernel, ConfirmsItsOwnFramesThroughTheFilter) {
   EXPECT_LT(sender->counters().confirmation_max, seconds(10));
 }
 
+TEST_F(SocketCanKernel, ReceivesFramesOfOtherNodesWithReservedIds) {
+  const auto sender =
+      open({.accepted_ids = {0x401}, .confirmed_ids = {0x510}, .reserved_ids = {0x510, 0x511}});
+  ASSERT_TRUE(sender);
+  for (const uint32_t id : {0x510u, 0x511u, 0x512u}) other_->send({.id = id}, Time{});
+  for (const uint32_t id : {0x510u, 0x511u}) {
+    ASSERT_TRUE(sender->wait(seconds(10)));
+    EXPECT_EQ(sender->receive()->frame.id, id);
+  }
+  EXPECT_FALSE(sender->receive());
+}
+
 TEST_F(SocketCanKernel, HoldsAFrameBackUntilThePreviousOneIsConfirmed) {
   const auto sender = open({.confirmed_ids = {0x510}});
   ASSERT_TRUE(sender);

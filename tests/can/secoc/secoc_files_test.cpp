@@ -79,6 +79,14 @@ TEST_F(SecocFilesTest, AStartThatCannotBeCountedIsRefused) {
   }
 }
 
+TEST_F(SecocFilesTest, AKeyInPlaceOfTheNumberIsNotShown) {
+  write(starts_, "2b7e151628aed2a6abf7158809cf4f3c\n");
+  const auto number = next_start_number(starts_);
+  ASSERT_FALSE(number);
+  EXPECT_THAT(number.error().message, HasSubstr("starts: found 32 bytes that are no number"));
+  EXPECT_THAT(number.error().message, testing::Not(HasSubstr("2b7e")));
+}
+
 TEST_F(SecocFilesTest, AFileThatCannotBeLookedForIsNoMissingFile) {
   const std::filesystem::path too_long = folder_ / std::string(300, 'x');
   for (const auto& number : {read_start_number(too_long), next_start_number(too_long)}) {

@@ -132,6 +132,52 @@ TEST(DbcSamplePairingTest, PagesOfOneMessageGiveAPosition) {
   EXPECT_GT(positions_of_pages(10, 5), 15U) << "one a second";
 }
 
+/// A message carries one page after the other: latitude, longitude, heading, and then others. The
+/// pages with the longitude come later by `jitter`.
+void expect_headings_of_their_round(int pages, Duration jitter) {
+  VehicleBinding paged = binding();
+  paged.messages.push_back(
+      {.name = "B", .id = 17, .length = 8, .cycle = kPositionCycle, .protection = {}});
+  for (const uint64_t page : {0, 1, 2}) {
+    paged.signals.push_back({.name = "S",
+                             .message = 1,
+                             .layout = kFineValue,
+                             .multiplexed = BoundSignal::Multiplexed{kPage, page},
+                             .available = {-500.0, 500.0}});
+  }
+  paged.gnss = {.latitude = 4, .longitude = 5, .sigma_m = 1.0, .heading = 6};
+  paged.gnss->sigma_heading_deg = 1.0;
+  DbcVehicleInput input(paged, {}, {49.0, 8.4}, 1.6);
+  int samples = 0;
+  constexpr int kRounds = 20;
+  for (int frame_number = 0; frame_number < kRounds * pages; ++frame_number) {
+    const int round = frame_number / pages;
+    const int page = frame_number % pages;
+    const Time due(frame_number * kPositionCycle);
+    const double values[] = {49.0, 8.4, 1.0 * round};
+    Frame frame = frame_with(17, kFineValue, page < 3 ? values[page] : 0.0);
+    insert_bits(kPage, static_cast<uint64_t>(page), {frame.data.data(), frame.length});
+    const auto sample = input.accept({frame, page == 1 ? due + jitter : due}).gnss;
+    // The periods of the signals are known after the second round.
+    if (!sample || round < 2) continue;
+    ++samples;
+    EXPECT_EQ(page, 2) << pages << " pages, round " << round;
+    EXPECT_EQ(sample->time, Time(round * pages * kPositionCycle));
+    ASSERT_TRUE(sample->yaw) << pages << " pages, round " << round;
+    EXPECT_NEAR(degrees(sample->yaw->yaw_rad), 90.0 - round, 1e-3) << pages << " pages";
+  }
+  EXPECT_EQ(samples, kRounds - 2) << pages << " pages";
+}
+
+TEST(DbcSamplePairingTest, AHeadingOnAPageIsThatOfItsPosition) {
+  for (const int pages : {3, 5, 6, 7, 12}) {
+    for (const Duration jitter : {Duration(std::chrono::milliseconds(-1)), Duration(0),
+                                  Duration(std::chrono::milliseconds(1))}) {
+      expect_headings_of_their_round(pages, jitter);
+    }
+  }
+}
+
 /// One of eight frames says whether the vehicle reverses.
 TEST(DbcSamplePairingTest, AConditionMayComeWithOnePageOfMany) {
   VehicleBinding paged = binding();

@@ -68,6 +68,16 @@ TEST(GpsdReaderTest, DividesTheHorizontalErrorOverTheAxes) {
   EXPECT_NEAR(report.fix.sigma_north_m, 2.0, 1e-9);
 }
 
+// As gpsd 3.22 writes it for UBX: eph is hAcc of the receiver, epx and epy are 15 m times the
+// dilution of precision.
+TEST(GpsdReaderTest, PrefersTheReceiversHorizontalErrorToTheGuessForTheAxes) {
+  const auto report = GpsdReader().read(
+      fix_with(R"("epx":2.1,"epy":3.2)", R"("epx":16.774,"epy":13.999,"eph":0.800)"));
+  ASSERT_EQ(report.line, GpsdLine::kFix);
+  EXPECT_NEAR(report.fix.sigma_east_m, 0.8 / std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(report.fix.sigma_north_m, 0.8 / std::sqrt(2.0), 1e-9);
+}
+
 TEST(GpsdReaderTest, PrefersTheReceiversOwnAccuracy) {
   GpsdReader reader;
   EXPECT_NEAR(reader.read(kRtkFix).fix.sigma_east_m, 13.3 / std::sqrt(2.0), 1e-9);
