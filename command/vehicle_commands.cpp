@@ -7,9 +7,9 @@
 #include "command/listen/listen_command.h"
 #include "command/manual/manual_commands.h"
 #include "command/schema/schema_command.h"
+#include "command/status/status_command.h"
 #include "command/udev/udev_rules_command.h"
 #include "common/version.h"
-#include "firmware/live/status_command.h"
 
 namespace bevloc::command {
 
@@ -22,7 +22,7 @@ void add_vehicle_commands(CLI::App& app, CommandList& commands,
   commands.add_with<SchemaCommand>(simulation, app);
   commands.add_with<ManualCommand>(simulation, app);
   commands.add_with<UdevRulesCommand>(simulation, app);
-  commands.add<firmware::StatusCommand>(app);
+  commands.add<StatusCommand>(app);
   commands.add<ListenCommand>(app);
   commands.add<CompletionCommand>(app);
 }

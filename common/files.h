@@ -27,6 +27,16 @@ inline Result<std::string> read_file(const std::filesystem::path& path) {
   return bytes.str();
 }
 
+/// Reads a file and returns what `parse` makes of it. `parse` gets the text and the file's name for
+/// messages, and returns a Result.
+template <typename Parse>
+auto parse_file(const std::filesystem::path& path, Parse parse)
+    -> decltype(parse(std::string(), std::string())) {
+  const Result<std::string> text = read_file(path);
+  if (!text) return tl::unexpected(text.error());
+  return parse(*text, path.string());
+}
+
 /// Creates or replaces a file.
 inline Status write_file(const std::filesystem::path& path, std::string_view bytes) {
   errno = 0;

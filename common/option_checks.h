@@ -71,6 +71,16 @@ inline CLI::Validator output_file() {
   return {check, "", ""};
 }
 
+/// Like output_file(), for a file that replace_file() writes.
+inline CLI::Validator replaced_file() {
+  const auto check = [](const std::string& text) -> std::string {
+    if (std::string refused = output_name()(text); !refused.empty()) return refused;
+    const Status replaceable = check_replaceable(text);
+    return replaceable ? "" : replaceable.error().message;
+  };
+  return {check, "", ""};
+}
+
 /// Parses the command line of a tool. If the program has to end, returns its exit code: 0 after
 /// --help, 2 after wrong options. Otherwise returns nothing.
 inline std::optional<int> parse_options(CLI::App& app, int argc, char** argv) {

@@ -9,6 +9,7 @@
 
 #include "common/file_descriptor.h"
 #include "common/files.h"
+#include "common/writable_folder.h"
 
 namespace bevloc {
 namespace {
@@ -18,14 +19,6 @@ Status flush_to_disk(const std::filesystem::path& path, int flags) {
   const FileDescriptor file(::open(path.c_str(), flags | O_CLOEXEC));
   if (file.get() >= 0 && ::fsync(file.get()) == 0) return {};
   return fail("{}: cannot write this to disk ({})", path.string(), std::strerror(errno));
-}
-
-/// Without this check the file would take the place of a device, such as /dev/stdout.
-Status check_replaceable(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::file_status found = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(found) || std::filesystem::is_regular_file(found)) return {};
-  return fail("{}: found a folder or a device, wanted a file to replace, or none", path.string());
 }
 
 /// Gives a new file the mode, owner and group of the file `earlier`, if there is one.
@@ -53,8 +46,7 @@ Status replace_like(const std::filesystem::path& path, std::string_view bytes,
   std::error_code error;
   std::filesystem::rename(draft, path, error);
   if (error) return fail("{}: cannot replace this file ({})", path.string(), error.message());
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  return flush_to_disk(folder, O_RDONLY | O_DIRECTORY);
+  return flush_to_disk(folder_of(path), O_RDONLY | O_DIRECTORY);
 }
 
 std::filesystem::path free_backup_of(const std::filesystem::path& path) {
@@ -70,13 +62,20 @@ std::filesystem::path free_backup_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+Status check_file_or_none(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status found = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(found) || std::filesystem::is_regular_file(found)) return {};
+  return fail("{}: found a folder or a device, wanted a file to replace, or none", path.string());
+}
+
 Status replace_file(const std::filesystem::path& path, std::string_view bytes) {
-  if (Status status = check_replaceable(path); !status) return status;
+  if (Status status = check_file_or_none(path); !status) return status;
   return replace_like(path, bytes, path);
 }
 
 Status replace_file_with_backup(const std::filesystem::path& path, std::string_view bytes) {
-  if (Status status = check_replaceable(path); !status) return status;
+  if (Status status = check_file_or_none(path); !status) return status;
   std::error_code error;
   if (std::filesystem::exists(path, error)) {
     const Result<std::string> earlier = read_file(path);

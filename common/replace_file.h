@@ -8,6 +8,10 @@
 
 namespace bevloc {
 
+/// Fails if `path` exists and is not a file. A new file must not take the place of a device, such
+/// as /dev/stdout.
+Status check_file_or_none(const std::filesystem::path& path);
+
 /// Writes a new file beside `path`, flushes it to the disk and renames it over `path`. The new file
 /// gets the mode of the earlier one. It also gets the owner and group, if this user may set them.
 /// Fails if `path` exists and is not a file.

@@ -150,9 +150,7 @@ YamlMap::Mapping* YamlMap::Document::open(const YAML::Node& node, std::string pa
 }
 
 Result<YamlMap> YamlMap::read_file(const std::filesystem::path& path) {
-  const Result<std::string> text = bevloc::read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  return parse(*text, path.string());
+  return parse_file(path, parse);
 }
 
 Result<YamlMap> YamlMap::parse(const std::string& text, const std::string& name) {

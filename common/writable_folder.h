@@ -9,6 +9,11 @@
 
 namespace bevloc {
 
+/// The folder of a file. A bare name lies in the current folder.
+inline std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 /// Returns why this user cannot create files in `folder`, or no error if it can. If the folder is
 /// missing, checks its nearest parent that exists instead.
 inline std::error_code cannot_write_in(const std::filesystem::path& folder) {

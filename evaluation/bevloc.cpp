@@ -34,7 +34,8 @@ CLI::App& add_group(CLI::App& app, const std::string& name, const std::string& d
 }
 
 void add_evaluation_commands(CLI::App& app, bevloc::command::CommandList& commands) {
-  auto& eval = add_group(app, "eval", "Evaluate a part on scenes that no tuning has used");
+  auto& eval =
+      add_group(app, "eval", "Evaluate solvers, networks, rigs, calibrations and integrity");
   auto& tune = add_group(app, "tune", "Find the parameters of a part on tuning scenes");
   auto& draw = add_group(app, "draw", "Write the data of the figures that script/figures draws");
   commands.add<SolverCommand>(eval, tune);

@@ -1,6 +1,7 @@
 // Keeps the commands from writing over the files that they read.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
@@ -8,12 +9,16 @@
 
 namespace bevloc::evaluation {
 
-/// Fails if one of the files `outs` is one of the files `inputs`, even under another name. Ignores
-/// empty names.
+/// Fails if one of the files `outs` is one of the files `inputs` or another one of `outs`, even
+/// under another name. Ignores empty names. Devices, such as /dev/null, may be named twice.
 inline Status check_outputs(const std::vector<std::filesystem::path>& outs,
                             const std::vector<std::filesystem::path>& inputs) {
-  for (const std::filesystem::path& out : outs) {
-    if (Status other = check_output(out, inputs); !other) return other;
+  for (auto out = outs.begin(); out != outs.end(); ++out) {
+    if (Status other = check_output(*out, inputs); !other) return other;
+    const auto is_same = [out](const auto& earlier) { return name_same_file(earlier, *out); };
+    if (check_file_or_none(*out) && std::any_of(outs.begin(), out, is_same)) {
+      return fail("{}: found one name for two files to write, wanted two names", out->string());
+    }
   }
   return {};
 }

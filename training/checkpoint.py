@@ -44,7 +44,7 @@ def state_of_weights(
 ) -> dict[str, Any]:
     """The state of a checkpoint with finished weights, which are also its averaged weights.
     `config`: what TrainingConfig.as_dict() gives; an export measures ranges and scales on samples
-    with these options."""
+    with these options. training.blend adds `rig_ranges` (stored_ranges() in export_onnx.py)."""
     return {"model": weights, "ema": weights, "samples": samples, "config": config}
 
 

@@ -30,7 +30,7 @@ from onnx import TensorProto, helper
 from training.checkpoint import load_network, nuisances_of, read_checkpoint
 from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED
 from training.data import Batch, SamplerStream
-from training.errors import TrainingError, run_program
+from training.errors import CheckpointError, TrainingError, run_program
 from training.fit_scales import ResultScales, fit_scales, fit_score_scale, fit_sigma_scale
 from training.graph import FoldedConv, Walk, check_exportable, folded_convolutions
 from training.model import (
@@ -79,6 +79,8 @@ class RigRanges:
         return RigRanges(widened(facts.focal_range_px), widened(facts.height_range_m))
 
 
+# The metadata of a model with the ranges of RigRanges, in the order of its fields.
+RANGE_KEYS = ("bevloc.rig.focal_range_px", "bevloc.rig.height_range_m")
 # The random rigs of --nuisances street (sim/samples/random_rig.cpp). They have 50 to 120 degrees of
 # view, of which a network image shows at most 90 (pipeline/preprocessing/network_camera.h).
 RANDOM_RIGS = RigRanges((160, 343), (0.6, 2.6))
@@ -128,23 +130,50 @@ def _range_statements(rigs: list[RigRanges]) -> dict[str, str]:
     """The ranges that the model states if it was trained on several rigs; empty for one rig."""
     if not rigs:
         return {}
-    values = {
-        "bevloc.rig.focal_range_px": [value for rig in rigs for value in rig.focal_px],
-        "bevloc.rig.height_range_m": [value for rig in rigs for value in rig.height_m],
-    }
-    return {name: f"{min(found):.4g} {max(found):.4g}" for name, found in values.items()}
+    fields = [rig.focal_px for rig in rigs], [rig.height_m for rig in rigs]
+    values = [[value for found in field for value in found] for field in fields]
+    return {key: f"{min(found):.4g} {max(found):.4g}" for key, found in zip(RANGE_KEYS, values)}
+
+
+def stated_ranges(path: Path) -> RigRanges | None:
+    """The ranges that a model file states; None if its network was trained on one rig.
+    CheckpointError if it states anything else."""
+    stated = {entry.key: entry.value for entry in onnx.load(str(path)).metadata_props}
+    found = [stated[key] for key in RANGE_KEYS if key in stated]
+    if not found:
+        return None
+    try:
+        (focal_least, focal_most), (least_m, most_m) = (map(float, text.split()) for text in found)
+    except ValueError as error:
+        raise CheckpointError(
+            f"{path}: found '{', '.join(found)}' as the ranges of the rig in the metadata, wanted "
+            "two numbers each for focal length and height"
+        ) from error
+    return RigRanges((focal_least, focal_most), (least_m, most_m))
+
+
+def stored_ranges(config: Mapping[str, Any]) -> list[RigRanges] | None:
+    """The ranges that training.blend stored in a checkpoint; None in one of training.train.
+    `config`: of the checkpoint."""
+    stored = config.get("rig_ranges")
+    return None if stored is None else [RigRanges(**ranges) for ranges in stored]
 
 
 def rig_statements(
-    nuisances: str = "usual", facts: DriveFacts | None = None, rig_file: Path = TRAINED_RIG
+    nuisances: str = "usual",
+    facts: DriveFacts | None = None,
+    rig_file: Path = TRAINED_RIG,
+    stored: list[RigRanges] | None = None,
 ) -> dict[str, str]:
     """What the model states about the cameras that it was trained with, so that bevlocd can refuse
     a rig of very different ones (pipeline/network/model/model_rig.h). `nuisances`: of training.
-    `facts`: those of the drives of training, if any."""
+    `facts`: those of the drives of training, if any. `stored`: stored_ranges(), which are those of
+    the training where there are any."""
     cameras = yaml.safe_load(rig_file.read_text())["cameras"]
     focal_px = [c["fx_px"] * IMAGE_COLS / c["image_size_px"][0] for c in cameras.values()]
     height_m = [c["vehicle_from_camera"]["translation_m"][2] for c in cameras.values()]
-    ranges = [RANDOM_RIGS] if nuisances == "street" else []
+    drawn = [RANDOM_RIGS] if nuisances == "street" else []
+    ranges = drawn if stored is None else list(stored)
     if facts is not None:
         own = RigRanges((min(focal_px), max(focal_px)), (min(height_m), max(height_m)))
         ranges += [own, RigRanges.of_drives(facts)]
@@ -288,8 +317,10 @@ def main() -> None:
     check_exportable(net.config)
     nuisances = nuisances_of(arguments.checkpoint)
     drives = drives_of(arguments) if arguments.recordings else None
-    check_source(read_checkpoint(arguments.checkpoint)["config"], arguments.checkpoint, drives)
-    rig = rig_statements(nuisances, drives.facts() if drives else None)
+    config = read_checkpoint(arguments.checkpoint)["config"]
+    check_source(config, arguments.checkpoint, drives)
+    facts = drives.facts() if drives else None
+    rig = rig_statements(nuisances, facts, stored=stored_ranges(config))
     batches, usual = fitting_batches(drives, nuisances, arguments.calibration, arguments.threads)
     quantization = quantization_of(net, arguments.checkpoint, batches)
     quantization.save(arguments.checkpoint.with_name(QUANTIZATION_FILE))

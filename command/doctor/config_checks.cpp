@@ -13,6 +13,7 @@
 #include "drivers/camera/replay/replay_camera.h"
 #include "drivers/camera/v4l2/device_finder.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "pipeline/preprocessing/view_check.h"
 
 namespace bevloc::command {
 namespace {
@@ -32,10 +33,18 @@ Finding check_file(const std::string& part, const std::filesystem::path& file) {
 
 Finding check_rig_file(const Config& config) {
   Finding finding = check_file("rig", config.rig_file);
-  const auto rig = read_rig(config.rig_file);
-  if (finding.level != Level::kOk || rig) return finding;
-  return {Level::kProblem, "rig", rig.error().message, "a rig file",
-          fmt::format("bevlocd --config {} --check-config", shell_word(config.file.string()))};
+  if (finding.level != Level::kOk) return finding;
+  const std::string file = config.rig_file.string();
+  const auto warning =
+      read_rig(config.rig_file).and_then([&](const Rig& rig) { return check_views(rig, file); });
+  if (!warning) {
+    return {Level::kProblem, "rig", warning.error().message, "a rig that bevlocd accepts",
+            fmt::format("bevlocd --config {} --check-config", shell_word(config.file.string()))};
+  }
+  if (warning->empty()) return finding;
+  return {Level::kWarning, "rig", *warning, "cameras that show the road down to the vehicle",
+          fmt::format("bevloc eval rig {}   # on a machine with the simulator: what this costs",
+                      shell_word(file))};
 }
 
 /// How a user gets access to a device.
@@ -107,10 +116,11 @@ Findings check_recordings(const Config& config) {
     const std::string part = fmt::format("camera {}", camera);
     const std::filesystem::path folder = config.cameras.recording / camera;
     const auto frames = drivers::load_recording(folder);
-    findings.push_back(
-        frames ? ok(part, fmt::format("{}, {} frames", folder.string(), frames->size()))
-               : Finding{Level::kProblem, part, frames.error().message,
-                         "a recording in cameras.recording", "ls " + shell_word(folder.string())});
+    findings.push_back(frames
+                           ? ok(part, fmt::format("{}, {} frames", folder.string(), frames->size()))
+                           : Finding{Level::kProblem, part, frames.error().message,
+                                     "a picture folder in cameras.recording (docs/drivers.md)",
+                                     "ls " + shell_word(folder.string())});
   }
   return findings;
 }

@@ -80,9 +80,9 @@ bool lists_module(const Machine& machine, const std::string& list, const std::st
 /// The finding about a unit that systemd has not loaded.
 Finding unloaded_unit(const std::string& load_state) {
   if (load_state == "not-found") {
-    return {Level::kWarning, "unit", "found no bevlocd.service", "the unit in the folder systemd/",
-            "sudo install -m 644 systemd/bevlocd.service /etc/systemd/system/ && sudo systemctl "
-            "daemon-reload"};
+    return {Level::kWarning, "unit", "found no bevlocd.service",
+            "the unit, the user bevloc and /usr/bin/bevlocd",
+            "sudo apt install ./bevloc_*.deb   # or the commands of docs/bring-up.md, step 2"};
   }
   if (load_state == "masked") {
     return {Level::kWarning, "unit", "found a masked unit, which nothing can start",

@@ -51,7 +51,8 @@ Status ManualCommand::run() const {
                            .what = "localizes a vehicle in its HD map",
                            .see_also = {"bevloc(1)", "bevloc.yaml(5)"},
                            .exit_codes = "0  it was told to end\n2  wrong use or input\n3  it was "
-                                         "told to end, and a thread hung"},
+                                         "told to end, or the ignition went off, and a thread "
+                                         "hung"},
                           daemon_table());
   const std::string configuration = man_page_of_schema({.name = "bevloc.yaml",
                                                         .section = 5,

@@ -105,7 +105,7 @@ void UdevRulesCommand::declare(CLI::App& app) {
   rules
       ->add_option("--out", out_,
                    "File to write if there is no mistake; without it, they are printed")
-      ->check(output_file());
+      ->check(replaced_file());
   rules->footer(
       "Examples:\n"
       "  bevloc udev-rules --config my_config.yaml\n"

@@ -1,17 +1,12 @@
 #include "common/mcap/reader.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <optional>
+#include <utility>
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
 #include <zstd.h>
 
 #include "common/crc32.h"
-#include "common/file_descriptor.h"
 #include "common/mcap/bytes.h"
 
 namespace bevloc::mcap {
@@ -60,30 +55,13 @@ const T* find_named(const std::vector<T>& all, std::string_view name) {
 
 }  // namespace
 
-struct Reader::Mapping {
-  void* address = nullptr;
-  size_t size = 0;
-  Mapping(void* mapped, size_t bytes) : address(mapped), size(bytes) {}
-  Mapping(const Mapping&) = delete;
-  Mapping& operator=(const Mapping&) = delete;
-  ~Mapping() { munmap(address, size); }
-};
-
 Result<Reader> Reader::open(const std::filesystem::path& path) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  struct stat status {};
-  const bool readable =
-      file.get() >= 0 && fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode);
-  const auto size = static_cast<size_t>(std::max<off_t>(status.st_size, 0));
-  void* mapped = MAP_FAILED;
-  if (readable && size > 0) mapped = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
-  if (mapped == MAP_FAILED) {
-    return fail("{}: found no readable file, wanted an MCAP recording", path.string());
-  }
+  auto file = MappedFile::open(path, "an MCAP recording");
+  if (!file) return tl::unexpected(file.error());
   Reader reader;
   reader.name_ = path.string();
-  reader.mapping_ = std::make_shared<const Mapping>(mapped, size);
-  reader.bytes_ = {static_cast<const char*>(mapped), size};
+  reader.file_ = std::make_shared<const MappedFile>(std::move(*file));
+  reader.bytes_ = reader.file_->bytes();
   if (Status read = reader.read(); !read) return tl::unexpected(read.error());
   return reader;
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/mapped_file.h"
 #include "common/mcap/format.h"
 #include "common/result.h"
 
@@ -58,8 +59,6 @@ class Reader {
   const Metadata* metadata(std::string_view name) const;
 
  private:
-  struct Mapping;
-
   Status read();
   bool read_summary();
   void read_beginning();
@@ -69,7 +68,7 @@ class Reader {
   Result<std::vector<char>> unpack(std::string_view content, uint64_t offset) const;
 
   std::string name_;
-  std::shared_ptr<const Mapping> mapping_;  ///< null for bytes in memory
+  std::shared_ptr<const MappedFile> file_;  ///< null for bytes in memory
   std::string_view bytes_;
   bool complete_ = false;
   std::map<uint16_t, Schema> schemas_;

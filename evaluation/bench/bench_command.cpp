@@ -10,8 +10,8 @@
 #include "evaluation/bench/bench_report.h"
 #include "evaluation/bench/stages.h"
 #include "evaluation/bench/sweeps.h"
-#include "evaluation/files_of_config.h"
 #include "evaluation/progress_bar.h"
+#include "firmware/config/files_of_config.h"
 
 namespace bevloc::bench {
 namespace {
@@ -55,7 +55,7 @@ void BenchCommand::declare(CLI::App& app) {
 Status BenchCommand::run() const {
   const auto config = evaluation::load_drive_config(given_or_shipped(config_file_));
   if (!config) return tl::unexpected(config.error());
-  if (Status other = check_output(json_file_, evaluation::files_of(*config)); !other) return other;
+  if (Status other = check_output(json_file_, files_of(*config)); !other) return other;
   return sweeps_.empty() ? measure(*config) : sweep(*config);
 }
 

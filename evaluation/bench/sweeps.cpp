@@ -11,10 +11,10 @@
 #include "drivers/clock/clock.h"
 #include "evaluation/bench/camera_formats.h"
 #include "evaluation/bench/cost_model.h"
+#include "evaluation/bench/repeated_town.h"
 #include "evaluation/bench/resident_memory.h"
 #include "evaluation/bench/scene.h"
 #include "evaluation/bench/stage_work.h"
-#include "evaluation/bench/tiled_map.h"
 #include "evaluation/bench/timing.h"
 #include "firmware/config/localizer_options.h"
 #include "firmware/runtime/appliance.h"
@@ -176,7 +176,7 @@ Result<SweepResult> sweep_hypotheses(const evaluation::DriveConfig& config,
 std::vector<double> map_row(const HdMap& town, const Se2& place, double wanted_km, int repeats) {
   const drivers::MonotonicClock clock;
   const double before_mib = resident_memory().now_mib;
-  const HdMap map = tiled_map(town, place.translation(), wanted_km);
+  const HdMap map = repeated_town(town, place.translation(), wanted_km);
   const Time start = clock.now();
   const MapIndex index(map);
   const double index_s = to_seconds(clock.now() - start);

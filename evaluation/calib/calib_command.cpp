@@ -69,7 +69,7 @@ void CalibCommand::declare_import(CLI::App& calib) {
   imports->add_option("FILE", files_, "Files of the other program")->required();
   imports->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
       ->required()
-      ->check(output_file());
+      ->check(replaced_file());
   // Each takes one value, because a further one is a FILE.
   imports
       ->add_option(
@@ -137,7 +137,7 @@ void CalibCommand::declare_refine(CLI::App& calib) {
                    "What must not change: rotation, position, focal or time; may be repeated")
       ->allow_extra_args(false);
   refine->add_option("--out", out_, "Rig file to write; the one before is kept as .bak")
-      ->check(output_file());
+      ->check(replaced_file());
   refine->footer(
       "Examples:\n"
       "  bevloc calib refine pictures --rig rig.yaml --map town.osm --out refined.yaml");
@@ -151,14 +151,15 @@ Result<command::Verdict> CalibCommand::run() const {
 }
 
 Status CalibCommand::run_import() const {
+  std::vector<std::filesystem::path> inputs(files_.begin(), files_.end());
+  inputs.emplace_back(extrinsics_file_);
+  if (Status other = check_output(out_, inputs); !other) return other;
   RigImportOptions options;
   auto our_names = parse_camera_names(camera_names_);
   if (!our_names) return tl::unexpected(our_names.error());
   options.our_names = std::move(*our_names);
   if (!extrinsics_file_.empty()) {
-    const auto text = read_file(extrinsics_file_);
-    if (!text) return tl::unexpected(text.error());
-    auto given = parse_extrinsics(*text, extrinsics_file_);
+    auto given = parse_file(extrinsics_file_, parse_extrinsics);
     if (!given) return tl::unexpected(given.error());
     options.vehicle_from = std::move(*given);
   }
@@ -194,10 +195,11 @@ Result<bool> CalibCommand::run_on_pictures() const {
   auto recording = FolderRecording::open(folder_, *rig, from_seconds(interval_s_));
   if (!recording) return tl::unexpected(recording.error());
   std::vector<std::filesystem::path> inputs = (*recording)->files();
-  inputs.insert(inputs.end(), {rig_file_, map_file_});
-  if (Status others = check_outputs({json_file_, picture_file_}, inputs); !others) {
-    return tl::unexpected(others.error());
-  }
+  inputs.emplace_back(map_file_);
+  // The rig may be replaced by the refined one, because a backup is kept.
+  Status others = check_outputs({out_, json_file_, picture_file_}, inputs);
+  if (others) others = check_outputs({json_file_, picture_file_}, {rig_file_});
+  if (!others) return tl::unexpected(others.error());
   RefinementOptions options;
   options.reference_position_m = reference_position_m_;
   options.reference_yaw_rad = radians(reference_yaw_deg_);

@@ -38,8 +38,8 @@ Status judge_drive(const SimulatedRecordingOptions& options, CalibrationErrors& 
 }  // namespace
 
 void CalibEvaluation::declare(CLI::App& eval) {
-  auto* calib = eval.add_subcommand(
-      "calib", "Refine calibrations with known errors from simulated recordings");
+  auto* calib =
+      eval.add_subcommand("calib", "Refine calibrations with known errors from simulated drives");
   calib->add_option("--first-seed", options_.seed, "Seed of the first drive")
       ->check(whole_number())
       ->capture_default_str();

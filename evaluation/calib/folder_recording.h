@@ -1,13 +1,12 @@
-// A recording in a folder: what the replay cameras play, with reference poses beside it.
+// A picture folder: what the replay cameras play, with reference poses beside it.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "common/cameras.h"
-#include "drivers/camera/replay/replay_camera.h"
+#include "drivers/camera/replay/recorded_framesets.h"
 #include "pipeline/calibration/refine/picture_recording.h"
 #include "pipeline/calibration/rig.h"
 
@@ -16,9 +15,9 @@ namespace bevloc::evaluation {
 class FolderRecording final : public PictureRecording {
  public:
   /// Reads the indexes: for each camera CAMERA/frames.txt (drivers::load_recording), and
-  /// reference.csv. A camera without a folder is missing. Frames within 50 ms of each other are one
-  /// frameset, with one frame of each camera; framesets closer than `interval` to the one before
-  /// are skipped. Fails if there is no camera, or if an index is wrong.
+  /// reference.csv. A camera without a folder is missing. Framesets (drivers::framesets_of) closer
+  /// than `interval` to the one before are skipped. Fails if there is no camera, or if an index is
+  /// wrong.
   static Result<std::unique_ptr<FolderRecording>> open(const std::filesystem::path& folder,
                                                        const Rig& rig, Duration interval);
 
@@ -30,22 +29,19 @@ class FolderRecording final : public PictureRecording {
   const ReferenceTrajectory& reference() const override { return reference_; }
   int framesets() const override { return static_cast<int>(framesets_.size()); }
   void rewind() override { next_ = 0; }
+  /// The pictures are in the order of time.
   Status next(std::vector<RecordedPicture>& pictures) override;
 
  private:
-  struct CameraFrame {
-    int camera;
-    drivers::RecordedFrame frame;
-  };
-  using Frames = std::vector<CameraFrame>;
-
-  FolderRecording(const Rig& rig, ReferenceTrajectory reference, Duration interval, Frames frames);
+  FolderRecording(const Rig& rig, ReferenceTrajectory reference, Duration interval,
+                  drivers::RecordedFrames frames);
 
   const Rig rig_;
   const ReferenceTrajectory reference_;
+  const drivers::RecordedFrames frames_;
   std::vector<std::filesystem::path> files_;
   CameraMask cameras_;
-  std::vector<Frames> framesets_;
+  std::vector<drivers::FramesetPlace> framesets_;
   size_t next_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Keeps the frameset of a recording that shows most paint, for a picture.
+// Keeps the frameset of a drive that shows most paint, for a picture.
 #pragma once
 
 #include "pipeline/calibration/refine/paint_lines.h"

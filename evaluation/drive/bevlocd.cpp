@@ -8,12 +8,13 @@
 #include "drivers/gpio/libgpiod_gpio.h"
 #include "evaluation/drive/bus_factory.h"
 #include "evaluation/drive/simulated_run.h"
-#include "evaluation/files_of_config.h"
 #include "evaluation/town_seeds.h"
 #include "firmware/config/config_key.h"
+#include "firmware/config/files_of_config.h"
 #include "firmware/daemon/daemon.h"
 #include "firmware/daemon/program.h"
 #include "pipeline/calibration/rig_yaml.h"
+#include "sim/render/photo_library.h"
 
 namespace {
 
@@ -94,6 +95,14 @@ Status simulate(const DriveOptions& options, const DriveConfig& config, const Ri
   return write_option_file(options.json_file, to_json(*report));
 }
 
+/// Reads the photographs of the street, which only the simulator knows.
+Status check_photos(const DriveConfig& config) {
+  if (!config.simulation || config.simulation->street.photos.empty()) return {};
+  const auto photos = firmware::at_key("simulation.street.photos",
+                                       sim::PhotoLibrary::load(config.simulation->street.photos));
+  return photos ? Status() : tl::unexpected(photos.error());
+}
+
 Status run(const firmware::ProgramOptions& program, const DriveOptions& drive,
            const firmware::LogWriter& log) {
   auto config = load_drive_config(program.config_file);
@@ -101,7 +110,10 @@ Status run(const firmware::ProgramOptions& program, const DriveOptions& drive,
   if (Status status = apply(drive, program.config_file, *config); !status) return status;
   if (Status status = firmware::override_config(program, *config); !status) return status;
   if (Status other = check_output(drive.json_file, files_of(*config)); !other) return other;
-  if (program.check_config) return firmware::check_and_print(program, *config);
+  if (program.check_config) {
+    const Status photos = check_photos(*config);
+    return photos ? firmware::check_and_print(program, *config) : photos;
+  }
   firmware::set_log_level(config->log_level);
   const auto rig = firmware::rig_of(*config);
   if (!rig) return tl::unexpected(rig.error());

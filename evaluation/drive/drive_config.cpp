@@ -4,6 +4,8 @@
 #include <memory>
 #include <utility>
 
+#include <sys/un.h>
+
 #include "common/time.h"
 #include "evaluation/drive/fault_config.h"
 #include "sim/world/world_generator.h"
@@ -98,7 +100,11 @@ void read_simulation(YamlMap yaml, SimulationConfig& simulation) {
   simulation.calibration_error = read_calibration_error(yaml.optional_map("calibration_error"));
   simulation.street = read_street(yaml.optional_map("street"));
   simulation.exposure_offsets = read_offsets(yaml);
-  simulation.fault_socket = yaml.optional<std::string>("fault_socket", "");
+  constexpr size_t kLongestSocket = sizeof(sockaddr_un::sun_path) - 1;
+  simulation.fault_socket = yaml.optional<std::string>(
+      "fault_socket", "",
+      not_empty(fmt::format("the name of a socket, 1 to {} bytes", kLongestSocket),
+                kLongestSocket));
   simulation.faults.clear();
   if (yaml.has("faults")) {
     for (YamlMap& fault : yaml.require_map_list("faults")) {

@@ -52,7 +52,11 @@ std::string latency_text(const DriveReport& report) {
 }  // namespace
 
 std::string to_table(const DriveReport& report) {
-  std::string table = error_table(report);
+  std::string table;
+  if (report.driven_s < report.duration_s) {
+    table = fmt::format("stopped after {:.1f} s of {:.1f} s\n", report.driven_s, report.duration_s);
+  }
+  table += error_table(report);
   table += fmt::format("frames             {} captured, {} used, {} dropped\n",
                        report.frames.captured, report.frames.used, report.frames.dropped());
   table += "exposure to CAN    " + latency_text(report) + "\n";
@@ -81,6 +85,7 @@ std::string to_json(const DriveReport& report) {
       {"valid_share", report.valid_share},
       {"seed", report.seed},
       {"duration_s", report.duration_s},
+      {"driven_s", report.driven_s},
       {"map", report.map},
       {"model", report.model}};
   return json_document(json);

@@ -28,7 +28,8 @@ struct DriveReport {
   double first_fix_s = 0.0;  ///< since the start of the drive; negative if there was none
   double valid_share = 0.0;  ///< Judge::valid_share()
   uint64_t seed = 0;
-  double duration_s = 0.0;
+  double duration_s = 0.0;  ///< as configured
+  double driven_s = 0.0;    ///< less than duration_s if the drive was stopped before its end
   std::string map;
   std::string model;
   std::vector<JudgedPose> poses;

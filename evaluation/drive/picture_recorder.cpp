@@ -1,11 +1,37 @@
 #include "evaluation/drive/picture_recorder.h"
 
+#include <string_view>
+#include <system_error>
+#include <vector>
+
 #include "common/files.h"
 #include "common/image_file.h"
 #include "drivers/camera/replay/replay_camera.h"
 #include "pipeline/map/map_binary.h"
 
 namespace bevloc::evaluation {
+namespace {
+
+constexpr const char* kMapFile = "map.bvm";
+
+}  // namespace
+
+Status PictureRecorder::begin() {
+  if (Status made = create_folder(folder_); !made) return made;
+  std::vector<std::filesystem::path> earlier{folder_ / kReferenceFile, folder_ / kMapFile};
+  for (const std::string_view camera : kCameraNames) {
+    earlier.push_back(folder_ / camera / drivers::kFrameIndex);
+  }
+  for (const std::filesystem::path& file : earlier) {
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    if (error) {
+      return fail("{}: cannot remove this file of an earlier drive ({}), wanted a new folder",
+                  file.string(), error.message());
+    }
+  }
+  return {};
+}
 
 void PictureRecorder::record(const drivers::Frameset& frameset) {
   if (status_) status_ = write_pictures(frameset);
@@ -33,8 +59,8 @@ Status PictureRecorder::finish(const ReferenceTrajectory& reference, const HdMap
     const auto index = folder_ / kCameraNames[camera] / drivers::kFrameIndex;
     if (Status s = write_file(index, indexes_[camera]); !s) return s;
   }
-  if (Status s = write_file(folder_ / "reference.csv", reference.to_csv()); !s) return s;
-  return write_map_binary(map, folder_ / "map.bvm");
+  if (Status s = write_file(folder_ / kReferenceFile, reference.to_csv()); !s) return s;
+  return write_map_binary(map, folder_ / kMapFile);
 }
 
 }  // namespace bevloc::evaluation

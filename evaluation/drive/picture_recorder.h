@@ -1,4 +1,4 @@
-// Writes the pictures of a simulated drive as a recording in a folder.
+// Writes the pictures of a simulated drive to a picture folder.
 #pragma once
 
 #include <array>
@@ -17,6 +17,10 @@ namespace bevloc::evaluation {
 class PictureRecorder {
  public:
   explicit PictureRecorder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Creates the folder and removes the indexes, the reference and the map of an earlier drive, so
+  /// that they are not taken for those of this drive.
+  Status begin();
 
   /// Writes the pictures of a frameset. After a failure it does nothing, and finish() returns the
   /// error.

@@ -25,16 +25,6 @@ constexpr Duration kReadout = std::chrono::milliseconds(20);
 /// runs.
 constexpr double kSpareDuration_s = 10.0;
 
-Time at(Time drive_start, double time_s) {
-  return drive_start + from_seconds(time_s);
-}
-
-/// The number of the reading that is due at this time.
-uint64_t reading_index(double elapsed_s, const std::vector<sim::Fault>& clock_faults,
-                       double period_s) {
-  return static_cast<uint64_t>(std::llround(sim::drive_time_s(elapsed_s, clock_faults) / period_s));
-}
-
 can::WheelOdometry measured_from(const sim::WheelReading& reading) {
   return {.left_mps = reading.left_mps,
           .right_mps = reading.right_mps,
@@ -67,13 +57,23 @@ SimulatedVehicle::SimulatedVehicle(const SimulatedDrive& drive, uint64_t seed,
                kRearTrack_m),
       attacker_(encoder_),
       bus_(std::move(bus)),
-      drive_start_(drive_start),
-      next_odometry_(drive_start),
-      next_gnss_(drive_start) {}
+      odometry_times_(sim::OdometrySimulator::kPeriod_s, drive_start),
+      gnss_times_(sim::GnssSimulator::kPeriod_s, drive_start) {}
+
+std::optional<SimulatedVehicle::ReadingTimes::Reading> SimulatedVehicle::ReadingTimes::take(
+    uint64_t readings, std::span<const sim::Fault> clock_faults) {
+  const double elapsed_s = static_cast<double>(count_) * period_s_;
+  ++count_;
+  next_ = drive_start_ + from_seconds(static_cast<double>(count_) * period_s_);
+  const auto index =
+      static_cast<uint64_t>(std::llround(sim::drive_time_s(elapsed_s, clock_faults) / period_s_));
+  if (index >= readings || sim::is_in_clock_gap(elapsed_s, clock_faults)) return std::nullopt;
+  return Reading{index, elapsed_s};
+}
 
 void SimulatedVehicle::send_due(Time now) {
-  while (next_odometry_ <= now) send_odometry(now);
-  while (next_gnss_ <= now) send_gnss(now);
+  while (odometry_times_.next() <= now) send_odometry(now);
+  while (gnss_times_.next() <= now) send_gnss(now);
 }
 
 void SimulatedVehicle::send(std::span<const can::Frame> frames, double elapsed_s, Time now) {
@@ -84,36 +84,26 @@ void SimulatedVehicle::send(std::span<const can::Frame> frames, double elapsed_s
 }
 
 void SimulatedVehicle::send_odometry(Time now) {
-  const double elapsed_s = static_cast<double>(odometry_count_) * sim::OdometrySimulator::kPeriod_s;
   const auto clock_faults = faults_->all(sim::FaultInput::kClock);
-  const uint64_t index = reading_index(elapsed_s, clock_faults, sim::OdometrySimulator::kPeriod_s);
-  if (index < odometry_.count() && !sim::is_in_clock_gap(elapsed_s, clock_faults)) {
-    const auto reading = sim::reading_with_faults(
-        odometry_, index, kRearTrack_m,
-        sim::in_drive_time(faults_->active(sim::FaultInput::kOdometry, elapsed_s), clock_faults));
-    if (reading) {
-      send(encoder_.odometry(measured_from(*reading)), elapsed_s, now);
-    }
-    attacker_.act(*faults_, elapsed_s, *bus_, now);
-  }
-  ++odometry_count_;
-  next_odometry_ =
-      at(drive_start_, static_cast<double>(odometry_count_) * sim::OdometrySimulator::kPeriod_s);
+  const auto due = odometry_times_.take(odometry_.count(), clock_faults);
+  if (!due) return;
+  const auto reading = sim::reading_with_faults(
+      odometry_, due->index, kRearTrack_m,
+      sim::in_drive_time(faults_->active(sim::FaultInput::kOdometry, due->elapsed_s),
+                         clock_faults));
+  if (reading) send(encoder_.odometry(measured_from(*reading)), due->elapsed_s, now);
+  attacker_.act(*faults_, due->elapsed_s, *bus_, now);
 }
 
 void SimulatedVehicle::send_gnss(Time now) {
-  const double elapsed_s = static_cast<double>(gnss_count_) * sim::GnssSimulator::kPeriod_s;
   const auto clock_faults = faults_->all(sim::FaultInput::kClock);
-  const uint64_t index = reading_index(elapsed_s, clock_faults, sim::GnssSimulator::kPeriod_s);
-  if (index < gnss_.count() && !sim::is_in_clock_gap(elapsed_s, clock_faults)) {
-    const auto reading = sim::reading_with_faults(
-        gnss_, index,
-        sim::in_drive_time(faults_->active(sim::FaultInput::kGnss, elapsed_s), clock_faults),
-        *drive_);
-    if (reading) send(encoder_.gnss(sample_of(*reading, now)), elapsed_s, now);
-  }
-  ++gnss_count_;
-  next_gnss_ = at(drive_start_, static_cast<double>(gnss_count_) * sim::GnssSimulator::kPeriod_s);
+  const auto due = gnss_times_.take(gnss_.count(), clock_faults);
+  if (!due) return;
+  const auto reading = sim::reading_with_faults(
+      gnss_, due->index,
+      sim::in_drive_time(faults_->active(sim::FaultInput::kGnss, due->elapsed_s), clock_faults),
+      *drive_);
+  if (reading) send(encoder_.gnss(sample_of(*reading, now)), due->elapsed_s, now);
 }
 
 Result<SimulatedDrive> SimulatedDrive::create(const DriveConfig& config) {

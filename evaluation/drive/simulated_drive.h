@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -63,12 +64,35 @@ class SimulatedVehicle {
                    std::unique_ptr<can::Bus> bus, Time drive_start);
 
   /// The time at which the next frames are due.
-  Time next_due() const { return std::min(next_odometry_, next_gnss_); }
+  Time next_due() const { return std::min(odometry_times_.next(), gnss_times_.next()); }
 
   /// Sends everything that is due at `now`.
   void send_due(Time now);
 
  private:
+  /// When the readings of one sensor are due.
+  class ReadingTimes {
+   public:
+    ReadingTimes(double period_s, Time drive_start)
+        : period_s_(period_s), drive_start_(drive_start), next_(drive_start) {}
+
+    Time next() const { return next_; }
+
+    struct Reading {
+      uint64_t index;    ///< among the readings of the sensor
+      double elapsed_s;  ///< since the drive's start, by the appliance's clock
+    };
+    /// The reading that is due, which the next one then follows. Returns nothing in a gap of the
+    /// clock, and after the sensor's last reading.
+    std::optional<Reading> take(uint64_t readings, std::span<const sim::Fault> clock_faults);
+
+   private:
+    double period_s_;
+    Time drive_start_;
+    uint64_t count_ = 0;
+    Time next_;
+  };
+
   void send_odometry(Time now);
   void send_gnss(Time now);
   void send(std::span<const can::Frame> frames, double elapsed_s, Time now);
@@ -80,11 +104,8 @@ class SimulatedVehicle {
   VehicleBusEncoder encoder_;
   BusAttacker attacker_;
   std::unique_ptr<can::Bus> bus_;
-  Time drive_start_;
-  uint64_t odometry_count_ = 0;
-  uint64_t gnss_count_ = 0;
-  Time next_odometry_;
-  Time next_gnss_;
+  ReadingTimes odometry_times_;
+  ReadingTimes gnss_times_;
 };
 
 }  // namespace bevloc::evaluation

@@ -49,6 +49,8 @@ class SimulatedRun {
                                                       const SimulatedRunOptions& options);
 
   void run(const StopWhen& stop);
+  /// Makes the folder of the pictures ready, if there is one.
+  Status begin_recording() { return recorder_ ? recorder_->begin() : Status(); }
   /// Completes the bus log.
   Status finish_log() { return judge_->finish(); }
   DriveReport report() const;
@@ -88,6 +90,7 @@ class SimulatedRun {
   std::unique_ptr<FaultServer> fault_server_;   ///< null without simulation.fault_socket
   ClockFaults clock_faults_;
   Time next_truth_{};
+  double driven_s_ = 0.0;
 };
 
 Result<std::unique_ptr<SimulatedRun>> SimulatedRun::create(const DriveConfig& config,
@@ -207,8 +210,10 @@ void SimulatedRun::run(const StopWhen& stop) {
     }
     const double time_s = to_seconds(now - drive_start_);
     if (fault_server_) fault_server_->step(time_s);
-    const bool last = time_s >= duration_s || drive_.is_over(time_s) || stop(supervisor.view());
+    const bool complete = time_s >= duration_s || drive_.is_over(time_s);
+    const bool last = complete || stop(supervisor.view());
     if (last) {
+      driven_s_ = complete ? duration_s : std::max(time_s, 0.0);
       drive_.faults()->release();
     } else {
       jump_if_due(time_s);
@@ -279,6 +284,7 @@ DriveReport SimulatedRun::report() const {
   report.valid_share = judge_->valid_share();
   report.seed = config_.simulation->seed;
   report.duration_s = config_.simulation->duration_s;
+  report.driven_s = driven_s_;
   report.map = drive_.map().name;
   report.model = std::as_const(*appliance_).localizer().model_name();
   report.poses = judge_->poses();
@@ -318,13 +324,9 @@ Status SimulatedRun::write_sheet_if_any() {
 Result<DriveReport> run_simulation(const DriveConfig& config, const Rig& rig,
                                    const SimulatedRunOptions& options, const StopWhen& stop) {
   if (Status made = create_folder(options.out); !made) return tl::unexpected(made.error());
-  if (!options.pictures_folder.empty()) {
-    if (Status made = create_folder(options.pictures_folder); !made) {
-      return tl::unexpected(made.error());
-    }
-  }
   auto run = SimulatedRun::create(config, rig, options);
   if (!run) return tl::unexpected(run.error());
+  if (Status begun = (*run)->begin_recording(); !begun) return tl::unexpected(begun.error());
   (*run)->run(stop);
   if (Status status = (*run)->finish_log(); !status) return tl::unexpected(status.error());
   DriveReport report = (*run)->report();

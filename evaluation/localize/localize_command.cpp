@@ -16,6 +16,7 @@
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/map/map_loader.h"
 #include "pipeline/map/map_summary.h"
+#include "pipeline/preprocessing/view_check.h"
 #include "sim/random.h"
 
 namespace bevloc::evaluation {
@@ -183,6 +184,9 @@ void LocalizeCommand::declare(CLI::App& app) {
 Status LocalizeCommand::run() const {
   const auto rig = read_rig(rig_file_);
   if (!rig) return tl::unexpected(rig.error());
+  const auto narrow_views = check_views(*rig, rig_file_);
+  if (!narrow_views) return tl::unexpected(narrow_views.error());
+  if (!narrow_views->empty()) fmt::print(stderr, "{}\n", *narrow_views);
   const auto map = load_map(map_file_);
   if (!map) return tl::unexpected(map.error());
   for (const std::string& warning : warnings_of(*map)) {

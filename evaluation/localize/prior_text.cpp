@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 
 #include "can/messages/geo_reference.h"
+#include "common/geodetic.h"
+#include "pipeline/map/map_points.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -15,8 +17,6 @@ namespace {
 constexpr double kAround_m = 1000.0;
 /// Numbers that are this near as latitude and longitude are hardly ever metres.
 constexpr double kMistaken_m = 100e3;
-constexpr double kMostLatitude_deg = 90.0;
-constexpr double kMostLongitude_deg = 180.0;
 // A larger number is a mistake.
 constexpr double kFarthest = 1e7;
 constexpr double kFullTurn_deg = 360.0;
@@ -44,19 +44,9 @@ Se2 in_map_frame(const Numbers& numbers) {
 
 /// Nothing if the numbers are no place on earth, or if that of the map is unknown.
 std::optional<Se2> from_geodetic(const Numbers& numbers, const GeoOrigin& origin) {
-  const bool is_on_earth = std::abs(numbers.first) <= kMostLatitude_deg &&
-                           std::abs(numbers.second) <= kMostLongitude_deg;
-  if (!is_known(origin) || !is_on_earth) return std::nullopt;
+  if (!is_known(origin) || !is_on_earth(numbers.first, numbers.second)) return std::nullopt;
   can::GeoReference reference({origin.latitude_deg, origin.longitude_deg});
   return reference.map_from_geodetic({{numbers.first, numbers.second}, numbers.third});
-}
-
-Eigen::AlignedBox2d area_of(const HdMap& map) {
-  Eigen::AlignedBox2d area;
-  for (const MapElement& element : map.elements) {
-    for (const Eigen::Vector2d& point : element.points) area.extend(point);
-  }
-  return area;
 }
 
 /// The least distance in metres between a pose and the rectangle around the map's points.
@@ -111,7 +101,7 @@ Result<GivenPose> pose_from(const std::string& text, PoseFrame frame, const HdMa
     return fail("--prior: found '{}', wanted at most {:.0f} m and {:.0f} degrees", text, kFarthest,
                 kFullTurn_deg);
   }
-  const Eigen::AlignedBox2d area = area_of(map);
+  const Eigen::AlignedBox2d area = bounds_of(map);
   const Se2 metric = in_map_frame(*numbers);
   const std::optional<Se2> geodetic = from_geodetic(*numbers, map.origin);
   const bool is_metric = distance_m(area, metric) <= kAround_m;

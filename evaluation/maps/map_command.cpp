@@ -86,7 +86,7 @@ void MapCommand::declare(CLI::App& app) {
       add("import", "Convert a map, and say what was taken, dropped and why", &MapCommand::import);
   imports->add_option("out", out_, "Map to write: .bvm or .geojson")
       ->required()
-      ->check(output_file());
+      ->check(replaced_file());
   imports->add_option("--classes", classes_,
                       "YAML file that gives kinds of lines a class (docs/maps.md)");
   imports->add_option("--origin", origin_,
@@ -202,6 +202,9 @@ Status MapCommand::diff() const {
         "{}: this map does not say where on earth it is, so its coordinates are compared as if "
         "both maps had the same origin; `bevloc map import --origin` gives a map its place\n",
         is_known(first->origin) ? other_ : in_);
+  }
+  if (Status near = check_near(*first, *second); !near) {
+    return fail("{}, {}: {}", in_, other_, near.error().message);
   }
   const MapDiff difference = compare(*first, *second);
   fmt::print("{}", text_of(difference));

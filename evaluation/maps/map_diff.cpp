@@ -8,6 +8,7 @@
 
 #include "pipeline/map/class_names.h"
 #include "pipeline/map/line_neighbours.h"
+#include "pipeline/map/map_check.h"
 #include "pipeline/map/tangent_plane.h"
 
 namespace bevloc::evaluation {
@@ -54,6 +55,20 @@ void add_lines(const std::vector<MapElement>& elements, OfClasses& lines) {
 }
 
 }  // namespace
+
+Status check_near(const HdMap& first, const HdMap& second) {
+  if (!is_known(first.origin) || !is_known(second.origin)) return {};
+  const GeographicLib::LocalCartesian plane(first.origin.latitude_deg, first.origin.longitude_deg);
+  Eigen::Vector3d other;
+  plane.Forward(second.origin.latitude_deg, second.origin.longitude_deg, 0.0, other.x(), other.y(),
+                other.z());
+  const double apart_m = other.norm();
+  if (apart_m <= kFarthestFromOriginM) return {};
+  return fail(
+      "found maps whose origins are {:.0f} km apart, wanted at most {:.0f} km; look for a wrong "
+      "origin with `bevloc map info`",
+      apart_m / 1000.0, kFarthestFromOriginM / 1000.0);
+}
 
 MapDiff compare(const HdMap& first, const HdMap& second) {
   const std::vector<MapElement> moved = moved_elements(second, first);

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/result.h"
 #include "evaluation/maps/map_facts.h"
 
 namespace bevloc::evaluation {
@@ -30,6 +31,10 @@ struct MapDiff {
   std::array<OfClass, kElementClasses> classes{};
   std::vector<Piece> pieces;  ///< about 1 m long
 };
+
+/// Fails if the maps lie so far apart that no map reaches from one to the other. A wrong origin is
+/// likely then, and one plane would not show both maps.
+Status check_near(const HdMap& first, const HdMap& second);
 
 /// Compares class by class. If both maps have a place on earth, the second one is moved into the
 /// frame of the first; otherwise their frames must be the same.

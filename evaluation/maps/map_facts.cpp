@@ -1,7 +1,6 @@
 #include "evaluation/maps/map_facts.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/line_neighbours.h"
 #include "pipeline/map/map_checksum.h"
+#include "pipeline/map/map_points.h"
 #include "pipeline/map/map_summary.h"
 
 namespace bevloc::evaluation {
@@ -92,22 +92,19 @@ void find_bare_lanes(const HdMap& map, const LineNeighbours& lines,
 }  // namespace
 
 MapFacts facts_of(const HdMap& map) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
   MapFacts facts;
   facts.origin = map.origin;
   facts.lanes = map.lanes.size();
   facts.checksum = map_checksum(map);
-  facts.low = {kFar, kFar};
-  facts.high = -facts.low;
+  if (const Eigen::AlignedBox2d bounds = bounds_of(map); !bounds.isEmpty()) {
+    facts.low = bounds.min();
+    facts.high = bounds.max();
+  }
   for (const MapElement& element : map.elements) {
     auto& of_class = facts.classes[static_cast<size_t>(element.element_class)];
     ++of_class.elements;
     of_class.points += element.points.size();
     of_class.length_m += length_of(element);
-    for (const Eigen::Vector2d& point : element.points) {
-      facts.low = facts.low.cwiseMin(point);
-      facts.high = facts.high.cwiseMax(point);
-    }
   }
   for (const Lane& lane : map.lanes) facts.lanes_m += polyline_length(lane.centerline);
   return facts;

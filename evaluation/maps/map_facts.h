@@ -22,7 +22,7 @@ struct MapFacts {
   std::array<OfClass, kElementClasses> classes{};  ///< in the order of ElementClass
   size_t lanes = 0;
   double lanes_m = 0.0;
-  Eigen::Vector2d low = Eigen::Vector2d::Zero();  ///< corners of the box around all elements, m
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();  ///< corners of bounds_of(), m; zero without one
   Eigen::Vector2d high = Eigen::Vector2d::Zero();
   uint32_t checksum = 0;
 };

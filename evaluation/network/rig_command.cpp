@@ -16,6 +16,7 @@
 #include "evaluation/summary_format.h"
 #include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/network/model/model_rig.h"
+#include "pipeline/preprocessing/view_check.h"
 #include "sim/samples/random_rig.h"
 
 namespace bevloc::evaluation {
@@ -88,6 +89,12 @@ Status RigCommand::run() const {
   if (!evaluation) return tl::unexpected(evaluation.error());
   if (const Status fits = check_rig_fits(evaluation->model_rig(), rig->rig); !fits) {
     fmt::print(stderr, "{}: bevlocd refuses it: {}\n", rig->name, fits.error().message);
+  }
+  const auto warning = check_views(rig->rig, rig->name);
+  if (!warning) {
+    fmt::print(stderr, "bevlocd refuses {}\n", warning.error().message);
+  } else if (!warning->empty()) {
+    fmt::print(stderr, "{}\n", *warning);
   }
   sim::SampleStream stream;
   stream.first_seed = first_seed_of(seed_);

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
 namespace bevloc::evaluation {
 namespace {
 
@@ -18,11 +16,6 @@ constexpr double kBottom = 22.0;
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
 /// Points that are farther apart in time are not joined.
 constexpr double kGap_s = 0.6;
-
-template <typename... T>
-void add(std::string& svg, fmt::format_string<T...> format, T&&... values) {
-  fmt::format_to(std::back_inserter(svg), format, std::forward<T>(values)...);
-}
 
 /// 1, 2 or 5 times a power of ten, so that `range` has about `parts` steps.
 double nice_step(double range, double parts) {
@@ -55,10 +48,10 @@ void add_time_axis(std::string& svg, double length_s, double top, double bottom)
   const double step_s = nice_step(std::max(length_s, 0.1), 10.0);
   for (double time_s = 0.0; time_s <= length_s + 1e-9; time_s += step_s) {
     const double x = kLeft + kPlotWidth * time_s / std::max(length_s, 0.1);
-    add(svg, "<line x1='{0:.1f}' x2='{0:.1f}' y1='{1:.1f}' y2='{2:.1f}' class='grid'/>", x, top,
-        bottom);
-    add(svg, "<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{:g} s</text>", x,
-        bottom + 15.0, time_s);
+    append(svg, "<line x1='{0:.1f}' x2='{0:.1f}' y1='{1:.1f}' y2='{2:.1f}' class='grid'/>", x, top,
+           bottom);
+    append(svg, "<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{:g} s</text>", x,
+           bottom + 15.0, time_s);
   }
 }
 
@@ -67,10 +60,10 @@ void add_value_axis(std::string& svg, const Range& range) {
   for (double value = std::ceil(range.low / step) * step; value <= range.high + 1e-9;
        value += step) {
     const double y = kTop + kPlotHeight * (range.high - value) / (range.high - range.low);
-    add(svg, "<line x1='{:.1f}' x2='{:.1f}' y1='{:.1f}' y2='{:.1f}' class='grid'/>", kLeft,
-        kLeft + kPlotWidth, y, y);
-    add(svg, "<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='end'>{:g}</text>", kLeft - 6.0,
-        y + 4.0, std::abs(value) < 1e-12 ? 0.0 : value);
+    append(svg, "<line x1='{:.1f}' x2='{:.1f}' y1='{:.1f}' y2='{:.1f}' class='grid'/>", kLeft,
+           kLeft + kPlotWidth, y, y);
+    append(svg, "<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='end'>{:g}</text>",
+           kLeft - 6.0, y + 4.0, std::abs(value) < 1e-12 ? 0.0 : value);
   }
 }
 
@@ -82,10 +75,10 @@ void add_line(std::string& svg, const Series& series, const Range& range, double
     if (!std::isfinite(point.value)) continue;
     const double x = kLeft + kPlotWidth * point.time_s / std::max(length_s, 0.1);
     const double y = kTop + kPlotHeight * (range.high - point.value) / (range.high - range.low);
-    add(path, "{}{:.1f} {:.1f}", point.time_s - previous_s > kGap_s ? "M" : "L", x, y);
+    append(path, "{}{:.1f} {:.1f}", point.time_s - previous_s > kGap_s ? "M" : "L", x, y);
     previous_s = point.time_s;
   }
-  add(svg, "<path d='{}' fill='none' stroke='{}' stroke-width='1.3'/>", path, series.color);
+  append(svg, "<path d='{}' fill='none' stroke='{}' stroke-width='1.3'/>", path, series.color);
 }
 
 /// Scales the map frame into the picture.
@@ -114,9 +107,10 @@ void add_element(std::string& svg, const MapElement& element, const MapScale& sc
   });
   if (!near) return;
   constexpr std::array<std::string_view, 3> kClasses = {"divider", "crossing", "boundary"};
-  add(svg, "<polyline class='{}' points='", kClasses[static_cast<size_t>(element.element_class)]);
+  append(svg, "<polyline class='{}' points='",
+         kClasses[static_cast<size_t>(element.element_class)]);
   for (const Eigen::Vector2d& point : element.points) {
-    add(svg, "{:.1f},{:.1f} ", scale.x(point.x()), scale.y(point.y()));
+    append(svg, "{:.1f},{:.1f} ", scale.x(point.x()), scale.y(point.y()));
   }
   svg += "'/>";
 }
@@ -126,7 +120,8 @@ void add_track(std::string& svg, const std::vector<PosedCycle>& cycles, const Ma
     if (cycles[i].time_s - cycles[i - 1].time_s > kGap_s) continue;
     const Se2& a = cycles[i - 1].map_from_vehicle;
     const Se2& b = cycles[i].map_from_vehicle;
-    add(svg, "<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='{}' stroke-width='3'/>",
+    append(
+        svg, "<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='{}' stroke-width='3'/>",
         scale.x(a.x_m), scale.y(a.y_m), scale.x(b.x_m), scale.y(b.y_m), color_of(cycles[i].state));
   }
 }
@@ -137,7 +132,7 @@ void add_truth(std::string& svg, const Track& truth, const MapScale& scale) {
   for (size_t i = 0; i < truth.size(); ++i) {
     const bool joined = i > 0 && to_seconds(truth[i].time - truth[i - 1].time) <= kGap_s;
     const Se2& pose = truth[i].map_from_vehicle;
-    add(svg, "{}{:.1f} {:.1f}", joined ? "L" : "M", scale.x(pose.x_m), scale.y(pose.y_m));
+    append(svg, "{}{:.1f} {:.1f}", joined ? "L" : "M", scale.x(pose.x_m), scale.y(pose.y_m));
   }
   svg += "'/>";
 }
@@ -192,17 +187,18 @@ std::string line_chart(std::string_view title, std::string_view unit,
                        const std::vector<Series>& series, double length_s) {
   const Range range = range_of(series);
   std::string svg;
-  add(svg,
-      "<svg viewBox='0 0 {} {}' role='img' aria-label='{} over time'><text x='{}' y='16' "
-      "class='title'>{} ({})</text>",
-      kWidth, kTop + kPlotHeight + kBottom, escaped(title), kLeft, escaped(title), escaped(unit));
+  append(svg,
+         "<svg viewBox='0 0 {} {}' role='img' aria-label='{} over time'><text x='{}' y='16' "
+         "class='title'>{} ({})</text>",
+         kWidth, kTop + kPlotHeight + kBottom, escaped(title), kLeft, escaped(title),
+         escaped(unit));
   add_value_axis(svg, range);
   add_time_axis(svg, length_s, kTop, kTop + kPlotHeight);
   double legend = kWidth - kRight;
   for (const Series& one : series) {
     add_line(svg, one, range, length_s);
-    add(svg, "<text x='{:.1f}' y='16' text-anchor='end' class='tick' style='fill:{}'>{}</text>",
-        legend, one.color, escaped(one.name));
+    append(svg, "<text x='{:.1f}' y='16' text-anchor='end' class='tick' style='fill:{}'>{}</text>",
+           legend, one.color, escaped(one.name));
     legend -= 12.0 + 7.0 * static_cast<double>(one.name.size());
   }
   return svg + "</svg>";
@@ -211,16 +207,16 @@ std::string line_chart(std::string_view title, std::string_view unit,
 std::string state_bar(const std::vector<StatePeriod>& periods, double length_s) {
   constexpr double kHeight = 34.0;
   std::string svg;
-  add(svg, "<svg viewBox='0 0 {} {}' role='img' aria-label='States over time'>", kWidth,
-      kHeight + kBottom);
+  append(svg, "<svg viewBox='0 0 {} {}' role='img' aria-label='States over time'>", kWidth,
+         kHeight + kBottom);
   for (const StatePeriod& period : periods) {
     const double begin = kPlotWidth * period.begin_s / std::max(length_s, 0.1);
     const double end = kPlotWidth * period.end_s / std::max(length_s, 0.1);
-    add(svg,
-        "<rect x='{:.2f}' y='4' width='{:.2f}' height='{}' fill='{}'><title>{} from {:.2f} s to "
-        "{:.2f} s: {}</title></rect>",
-        kLeft + begin, std::max(0.4, end - begin), kHeight - 8.0, color_of(period.state),
-        to_string(period.state), period.begin_s, period.end_s, escaped(to_string(period.why)));
+    append(svg,
+           "<rect x='{:.2f}' y='4' width='{:.2f}' height='{}' fill='{}'><title>{} from {:.2f} s to "
+           "{:.2f} s: {}</title></rect>",
+           kLeft + begin, std::max(0.4, end - begin), kHeight - 8.0, color_of(period.state),
+           to_string(period.state), period.begin_s, period.end_s, escaped(to_string(period.why)));
   }
   add_time_axis(svg, length_s, 4.0, kHeight - 4.0);
   return svg + "</svg>";
@@ -239,17 +235,18 @@ std::string track_map(const ReportData& data) {
   const MapScale scale{box.low.x(), box.high.y(),
                        std::min(kWidth / size.x(), kMostHeight / size.y())};
   std::string svg;
-  add(svg, "<svg class='map' viewBox='0 0 {:.0f} {:.0f}' role='img' aria-label='Track on the map'>",
-      size.x() * scale.px_per_m, size.y() * scale.px_per_m);
+  append(svg,
+         "<svg class='map' viewBox='0 0 {:.0f} {:.0f}' role='img' aria-label='Track on the map'>",
+         size.x() * scale.px_per_m, size.y() * scale.px_per_m);
   if (data.map) {
     for (const MapElement& element : data.map->elements) add_element(svg, element, scale, box);
   }
   add_track(svg, data.cycles, scale);
   add_truth(svg, data.truth, scale);
   const double bar_m = nice_step(size.x(), 8.0);
-  add(svg, "<line class='bar' x1='12' x2='{:.1f}' y1='14' y2='14'/>",
-      12.0 + bar_m * scale.px_per_m);
-  add(svg, "<text x='12' y='30' class='tick'>{:g} m</text>", bar_m);
+  append(svg, "<line class='bar' x1='12' x2='{:.1f}' y1='14' y2='14'/>",
+         12.0 + bar_m * scale.px_per_m);
+  append(svg, "<text x='12' y='30' class='tick'>{:g} m</text>", bar_m);
   return svg + "</svg>";
 }
 

@@ -1,9 +1,13 @@
 // Charts and maps as inline SVG.
 #pragma once
 
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "evaluation/report/report_data.h"
 
@@ -30,5 +34,11 @@ std::string_view color_of(HealthState state);
 
 /// Text that may stand in HTML.
 std::string escaped(std::string_view text);
+
+/// Appends formatted text.
+template <typename... T>
+void append(std::string& text, fmt::format_string<T...> format, T&&... values) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<T>(values)...);
+}
 
 }  // namespace bevloc::evaluation

@@ -79,8 +79,12 @@ void ReportCommand::declare(CLI::App& app) {
   report->add_option("--out", out_, "The page (.html)")
       ->check(output_file())
       ->capture_default_str();
-  report->add_option("--at", moments_,
-                     "Explain the state at this time: 14:32, 14:32:05 (local time), or seconds");
+  // Takes one value, because a further one is a file.
+  report
+      ->add_option("--at", moments_,
+                   "Explain the state at this time: 14:32, 14:32:05 (local time), or seconds; may "
+                   "be repeated")
+      ->allow_extra_args(false);
   report->footer(
       "Examples:\n"
       "  bevloc report recording/*.mcap --out report.html\n"

@@ -209,12 +209,14 @@ Result<double> parse_moment(const ReportData& data, const std::string& text) {
     return fail("--at: found {}, wanted a time within the recording, {} to {}", text,
                 time_of_day(data, 0.0), time_of_day(data, data.length_s));
   }
-  if (!whole_minute) return moment_s;
+  // The first state comes a little after the first message.
+  const double first_s = data.periods.empty() ? 0.0 : data.periods.front().begin_s;
+  if (!whole_minute) return std::max(moment_s, first_s);
   for (const StatePeriod& period : data.periods) {
     const bool inside = period.end_s >= moment_s && period.begin_s < last_s;
     if (inside && is_bad(period.state)) return std::max({period.begin_s, moment_s, 0.0});
   }
-  return std::max(moment_s, 0.0);
+  return std::max(moment_s, first_s);
 }
 
 namespace {

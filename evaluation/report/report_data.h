@@ -66,7 +66,8 @@ Result<ReportData> read_report_data(Recording& recording);
 std::string time_of_day(const ReportData& data, double time_s);
 
 /// Reads "14:32", "14:32:05" (local time of day) or "12.5" (seconds since the beginning). A time
-/// without seconds means the first LOST or FAULT in that minute, or else the start of the minute.
+/// without seconds means the first LOST or FAULT in that minute, or else the start of the minute. A
+/// time before the first state means the begin of this state.
 /// Fails for a time outside of the recording.
 Result<double> parse_moment(const ReportData& data, const std::string& text);
 

@@ -33,11 +33,6 @@ constexpr std::string_view kBlue = "#2f6fd0";
 constexpr std::string_view kRed = "#c9372c";
 constexpr std::string_view kGrey = "#7a828c";
 
-template <typename... T>
-void append(std::string& page, fmt::format_string<T...> format, T&&... values) {
-  fmt::format_to(std::back_inserter(page), format, std::forward<T>(values)...);
-}
-
 Series series_of(const ReportData& data, std::string name, std::string_view color,
                  double (*value)(const PosedCycle&)) {
   Series series{std::move(name), color, {}};

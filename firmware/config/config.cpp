@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "firmware/config/config_milliseconds.h"
+#include "firmware/config/files_of_config.h"
 #include "firmware/config/manifest.h"
 #include "firmware/config/vehicle_bus_config.h"
 
@@ -276,10 +277,11 @@ HealthLimits read_health(std::optional<YamlMap> yaml) {
 
 LogLevel read_log_level(std::optional<YamlMap> yaml) {
   if (!yaml) return LogLevel::kInfo;
-  return yaml->require_choice<LogLevel>("level", {{"debug", LogLevel::kDebug},
-                                                  {"info", LogLevel::kInfo},
-                                                  {"warning", LogLevel::kWarning},
-                                                  {"error", LogLevel::kError}});
+  return yaml->optional_choice<LogLevel>("level", LogLevel::kInfo,
+                                         {{"debug", LogLevel::kDebug},
+                                          {"info", LogLevel::kInfo},
+                                          {"warning", LogLevel::kWarning},
+                                          {"error", LogLevel::kError}});
 }
 
 void read_online_calibration(std::optional<YamlMap> yaml, const std::filesystem::path& folder,
@@ -384,6 +386,7 @@ Result<Config> load_config(const std::filesystem::path& file, const SimulationRe
   auto config = load_config_without_manifest(file, simulation,
                                              {.folder = file.parent_path(), .dbc_file = {}});
   if (!config) return config;
+  if (Status own = check_learned_file(*config); !own) return tl::unexpected(own.error());
   if (Status same = check_manifest_of(*config); !same) return tl::unexpected(same.error());
   return config;
 }

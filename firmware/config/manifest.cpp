@@ -11,6 +11,7 @@ namespace bevloc::firmware {
 namespace {
 
 constexpr size_t kDigits = 64;
+constexpr size_t kMostShown = 80;  ///< characters of a wrong line
 
 bool is_checksum(std::string_view text) {
   return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == text.npos;
@@ -40,8 +41,9 @@ Result<std::vector<ManifestEntry>> parse_manifest(std::string_view text, const s
     const std::string_view rest = line.substr(std::min(kDigits, line.size()));
     const bool has_file = rest.size() > 2 && (rest.starts_with("  ") || rest.starts_with(" *"));
     if (!has_file || !is_checksum(line.substr(0, kDigits))) {
+      // Of a wrong file, a line may have megabytes.
       return fail("{}:{}: found \"{}\", wanted a checksum and a file, as sha256sum writes them",
-                  name, number, line);
+                  name, number, line.substr(0, kMostShown));
     }
     entries.push_back({rest.substr(2), std::string(line.substr(0, kDigits)), number});
   }
@@ -51,9 +53,7 @@ Result<std::vector<ManifestEntry>> parse_manifest(std::string_view text, const s
 
 Status check_manifest(const std::filesystem::path& manifest,
                       std::span<const std::filesystem::path> used) {
-  const Result<std::string> text = read_file(manifest);
-  if (!text) return tl::unexpected(text.error());
-  const auto entries = parse_manifest(*text, manifest.string());
+  const auto entries = parse_file(manifest, parse_manifest);
   if (!entries) return tl::unexpected(entries.error());
   const std::filesystem::path folder = manifest.parent_path();
   for (const ManifestEntry& entry : *entries) {

@@ -89,10 +89,12 @@ Status override_config(const ProgramOptions& options, Config& config) {
 }
 
 Result<Rig> rig_of(const Config& config) {
-  return at_key("calibration.rig",
-                config.kept_files.bytes_of(config.rig_file).and_then([&](const std::string& text) {
-                  return parse_rig(text, config.rig_file.string());
-                }));
+  const std::string file = config.rig_file.string();
+  const auto parse = [&file](const std::string& text) { return parse_rig(text, file); };
+  auto rig = at_key("calibration.rig", config.kept_files.bytes_of(config.rig_file).and_then(parse));
+  if (!rig) return rig;
+  if (Status shown = check_shown(*rig, file); !shown) return tl::unexpected(shown.error());
+  return rig;
 }
 
 void handle_signals() {

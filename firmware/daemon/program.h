@@ -30,7 +30,7 @@ void declare_options(CLI::App& app, ProgramOptions& options);
 Status override_config(const ProgramOptions& options, Config& config);
 
 /// Returns the rig that the configuration names, as its file was when load_config() read it. Fails
-/// if the file could not be read or has a mistake.
+/// if the file could not be read or has a mistake, and as check_shown() does.
 Result<Rig> rig_of(const Config& config);
 
 /// Installs the signal handlers. SIGTERM and SIGINT set stop_requested(). SIGHUP is logged and

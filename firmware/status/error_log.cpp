@@ -79,9 +79,8 @@ void ErrorLog::note_vehicle_input(const can::VehicleInputCounters& input, Time n
         input.incomplete, now);
   count("CAN in: found a signal that is not available or out of range; check the sender",
         input.not_available, now);
-  count(
-      "CAN in: found odometry less often than every 45 ms, wanted it every 20 ms; check the sender",
-      input.slow_odometry, now);
+  count("CAN in: found odometry that comes too seldom; check the cycle of the sender's messages",
+        input.slow_odometry, now);
   count("CAN in: found wheel speeds that contradict the yaw rate; check both sensors",
         input.contradicting_wheels, now);
   count("CAN in: found a change of odometry that no vehicle can make; check the sensors",
@@ -130,8 +129,9 @@ void ErrorLog::note_gnss(const GnssCounters& gnss, Time now) {
   count("gpsd: found a fix from the future; check that the system clock is UTC",
         gnss.of(FixVerdict::kFuture), now);
   count(
-      "gpsd: found a system clock that is not synchronized; check chrony or linuxptp, and that the "
-      "drop-in clock.conf is installed, or choose gnss.timing: arrival",
+      "gpsd: found a system clock that is not synchronized, or whose error may exceed 100 ms; "
+      "check chrony or linuxptp, and that the drop-in clock.conf is installed, or choose "
+      "gnss.timing: arrival",
       gnss.of(FixVerdict::kUnsynchronized), now);
   count("gpsd: found the same fix twice; choose one receiver with gnss.device",
         gnss.of(FixVerdict::kRepeated), now);

@@ -1,13 +1,10 @@
 #include "firmware/status/metrics.h"
 
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <vector>
 
 #include <prometheus/text_serializer.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include "common/version.h"
 
@@ -336,24 +333,6 @@ void add_process(Families& families, const Telemetry& telemetry, const ProcessUs
 }
 
 }  // namespace
-
-ProcessUse use_of_this_process() {
-  ProcessUse use;
-  std::ifstream statm("/proc/self/statm");
-  double total_pages = 0.0;
-  double resident_pages = 0.0;
-  if (statm >> total_pages >> resident_pages) {
-    use.resident_bytes = resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-  }
-  rusage usage{};
-  if (getrusage(RUSAGE_SELF, &usage) == 0) {
-    const auto seconds = [](const timeval& time) {
-      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    };
-    use.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  }
-  return use;
-}
 
 std::string metrics_text(const Telemetry& telemetry, const ProcessUse& process, Duration age) {
   Families families;

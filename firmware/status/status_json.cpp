@@ -54,16 +54,13 @@ json camera_of(const Telemetry& telemetry, int index) {
   if (camera.dirty) faults.push_back("dirty");
   if (camera.stamps_jumped) faults.push_back("time stamps jumped");
   if (telemetry.view.calibration_fault[index]) faults.push_back("out of place");
-  const drivers::SynchronizerCounters& refused = camera.synchronizer;
   return {{"name", kCameraNames[index]},
           {"used", static_cast<bool>(telemetry.snapshot.estimation.cameras[index])},
           {"captured", camera.captured},
-          {"lost", camera.driver.no_buffer + camera.driver.overrun + camera.driver.lost +
-                       camera.driver.damaged},
-          {"dropped", refused.duplicate + refused.out_of_order + refused.late + refused.future +
-                          refused.overflow + refused.unmatched},
-          {"missed_framesets", refused.missing},
-          {"waited_framesets", refused.waited_for},
+          {"lost", camera.driver.missed()},
+          {"dropped", camera.synchronizer.refused()},
+          {"missed_framesets", camera.synchronizer.missing},
+          {"waited_framesets", camera.synchronizer.waited_for},
           {"unreadable", camera.unreadable},
           {"failures", camera.failures},
           {"faults", faults},
@@ -80,19 +77,16 @@ json tracker_of(const OutcomeCounts& outcomes) {
 
 json bus_of(const Snapshot& snapshot) {
   const can::BusCounters& bus = snapshot.bus;
-  const double mean_s =
-      bus.confirmed == 0 ? 0.0
-                         : to_seconds(bus.confirmation_total) / static_cast<double>(bus.confirmed);
   return {{"condition", can::to_string(snapshot.bus_condition)},
           {"sent", bus.sent},
           {"received", bus.received},
           {"waiting", bus.send_waiting},
-          {"send_dropped", bus.send_replaced + bus.send_expired + bus.send_bus_down},
+          {"send_dropped", bus.send_dropped()},
           {"receive_dropped", bus.receive_dropped},
           {"receive_overruns", bus.receive_overrun},
           {"error_frames", bus.error_frames},
           {"bus_off", bus.bus_off},
-          {"confirmation_mean_ms", 1e3 * mean_s},
+          {"confirmation_mean_ms", 1e3 * bus.confirmation_mean_s()},
           {"confirmation_max_ms", to_milliseconds(bus.confirmation_max)}};
 }
 
@@ -146,115 +140,6 @@ json recording_of(const RecordingSnapshot& recording) {
           {"black_boxes", recording.black_boxes}};
 }
 
-/// Returns the value at a path such as "pose.sigma.lateral_m" as text.
-std::string text_at(const json& status, const std::string& path, const char* format = "{}") {
-  const json* at = &status;
-  for (size_t start = 0; start <= path.size();) {
-    const size_t end = std::min(path.find('.', start), path.size());
-    const auto found = at->is_object() ? at->find(path.substr(start, end - start)) : at->end();
-    if (!at->is_object() || found == at->end()) return "-";
-    at = &*found;
-    start = end + 1;
-  }
-  if (at->is_string()) return at->get<std::string>();
-  if (at->is_number_integer()) return fmt::format("{}", at->get<int64_t>());
-  if (at->is_number()) return fmt::format(fmt::runtime(format), at->get<double>());
-  return "-";
-}
-
-std::string list_of(const json& items) {
-  std::string text;
-  for (const json& item : items) {
-    if (item.is_string()) text += (text.empty() ? "" : ", ") + item.get<std::string>();
-  }
-  return text;
-}
-
-/// Returns what /healthz says, unless state and reasons say the same.
-std::string health_of(const json& status) {
-  const std::string health = text_at(status, "health");
-  const bool said = health.starts_with(text_at(status, "state"));
-  return status.value("healthy", true) || said ? "" : fmt::format("  {}\n", health);
-}
-
-std::string reasons_of(const json& status) {
-  std::string text;
-  for (const json& why : status.value("why", json::array())) {
-    text += fmt::format("  {}: {}\n", text_at(why, "reason"), text_at(why, "do"));
-  }
-  return text;
-}
-
-std::string accuracy_of(const json& status) {
-  std::string text = "            longitudinal     lateral         yaw\n";
-  for (const auto& [title, key] :
-       {std::pair{"sigma", "sigma"}, {"protection", "protection_level"}}) {
-    const std::string path = fmt::format("pose.{}.", key);
-    text += fmt::format("{:10} {:>11} m {:>9} m {:>7} deg\n", title,
-                        text_at(status, path + "longitudinal_m", "{:.2f}"),
-                        text_at(status, path + "lateral_m", "{:.2f}"),
-                        text_at(status, path + "yaw_deg", "{:.2f}"));
-  }
-  return text;
-}
-
-std::string cameras_of(const json& status) {
-  std::string text =
-      "camera      used  captured      lost   dropped  unreadable  failures  faults\n";
-  for (const json& camera : status.value("cameras", json::array())) {
-    if (!camera.is_object()) continue;
-    text += fmt::format("{:12}{:4} {:>9} {:>9} {:>9} {:>11} {:>9}  {}\n", text_at(camera, "name"),
-                        camera.value("used", false) ? "yes" : "NO", text_at(camera, "captured"),
-                        text_at(camera, "lost"), text_at(camera, "dropped"),
-                        text_at(camera, "unreadable"), text_at(camera, "failures"),
-                        list_of(camera.value("faults", json::array())));
-  }
-  return text;
-}
-
-std::string head_of(const json& status) {
-  std::string text = fmt::format(
-      "bevlocd {}: {}, pose {}{}\n{}{}", text_at(status, "version"), text_at(status, "state"),
-      status.value("valid", false) ? "valid" : "NOT valid",
-      status.value("healthy", true) ? "" : ", NOT healthy", health_of(status), reasons_of(status));
-  if (text_at(status, "lost.count") != "0" && status.contains("lost")) {
-    text += fmt::format("  lost {} times, the latest time because of: {}\n",
-                        text_at(status, "lost.count"), text_at(status, "lost.why"));
-  }
-  return text;
-}
-
-std::string inputs_of(const json& status) {
-  std::string text = fmt::format(
-      "\nvehicle     {} odometry and {} GNSS samples; {} frames lost, {} refused by E2E\n",
-      text_at(status, "vehicle.odometry_samples"), text_at(status, "vehicle.gnss_samples"),
-      text_at(status, "vehicle.frames_lost"), text_at(status, "vehicle.e2e_refused"));
-  if (status.contains("authentication")) {
-    text += fmt::format(
-        "SecOC       {} epochs authentic; refused: {} wrong code, {} incomplete, {} no freshness\n",
-        text_at(status, "authentication.authentic"), text_at(status, "authentication.wrong_mac"),
-        text_at(status, "authentication.incomplete"),
-        text_at(status, "authentication.no_freshness"));
-  }
-  if (status.contains("gnss")) {
-    text += fmt::format(
-        "gpsd        {}; {} samples, {} reports and {} fixes refused, at most {} ms old\n",
-        status["gnss"].value("connected", false) ? "connected" : "NOT connected",
-        text_at(status, "gnss.samples"), text_at(status, "gnss.reports_refused"),
-        text_at(status, "gnss.fixes_refused"), text_at(status, "gnss.age_max_ms", "{:.0f}"));
-  }
-  return text;
-}
-
-std::string recording_line(const json& status) {
-  if (!status.contains("recording")) return "";
-  return fmt::format(
-      "recording   {}{} MB; {} images and {} events dropped, {} black boxes kept\n",
-      status["recording"].value("failed", false) ? "FAILED after " : "",
-      text_at(status, "recording.megabytes", "{:.0f}"), text_at(status, "recording.images_dropped"),
-      text_at(status, "recording.events_dropped"), text_at(status, "recording.black_boxes"));
-}
-
 }  // namespace
 
 json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration age) {
@@ -305,38 +190,6 @@ json status_json(const Telemetry& telemetry, const ProcessUse& process, Duration
   status["memory_mb"] = process.resident_bytes / 1e6;
   status["cpu_s"] = process.cpu_s;
   return status;
-}
-
-std::string status_page(const json& status) {
-  if (!status.is_object()) return "the daemon sent no status\n";
-  if (status.value("phase", "running") != "running") {
-    return fmt::format("bevlocd {}: {}\n", text_at(status, "version"), text_at(status, "health"));
-  }
-  std::string text = head_of(status);
-  text += fmt::format("\npose        x {} m, y {} m, yaw {} deg in the map; {} m/s\n",
-                      text_at(status, "pose.x_m", "{:.2f}"), text_at(status, "pose.y_m", "{:.2f}"),
-                      text_at(status, "pose.yaw_deg", "{:.2f}"),
-                      text_at(status, "pose.speed_mps", "{:.1f}"));
-  text += accuracy_of(status);
-  text += fmt::format("rate        {} framesets per second; latency {} ms median, {} ms for 99 %\n",
-                      text_at(status, "rate_hz", "{:.1f}"),
-                      text_at(status, "latency_ms.median", "{:.0f}"),
-                      text_at(status, "latency_ms.p99", "{:.0f}"));
-  text += fmt::format("framesets   {} taken, {} skipped, {} without a prior\n\n{}",
-                      text_at(status, "framesets.taken"), text_at(status, "framesets.skipped"),
-                      text_at(status, "framesets.without_prior"), cameras_of(status));
-  text += inputs_of(status);
-  text += fmt::format(
-      "CAN         {}; {} sent and {} dropped, {} received and {} lost, {} overruns, {} error "
-      "frames\n",
-      text_at(status, "can.condition"), text_at(status, "can.sent"),
-      text_at(status, "can.send_dropped"), text_at(status, "can.received"),
-      text_at(status, "can.receive_dropped"), text_at(status, "can.receive_overruns"),
-      text_at(status, "can.error_frames"));
-  text += recording_line(status);
-  text += fmt::format("process     {} MB, {} s of CPU time\n",
-                      text_at(status, "memory_mb", "{:.0f}"), text_at(status, "cpu_s", "{:.0f}"));
-  return text;
 }
 
 }  // namespace bevloc::firmware

@@ -38,7 +38,8 @@ const char* advice_for(Why why) {
     case Why::kCameraMissing:
       return "Look for the camera without usable frames; check its cable and its power.";
     case Why::kCamerasUnsynchronized:
-      return "Check the trigger line and that every camera is in trigger mode.";
+      return "Check the trigger line and that every camera is in trigger mode; without a trigger, "
+             "use compensate_motion with a wide tolerance_ms.";
     case Why::kOdometryMissing:
       return "Check that wheel speed and yaw rate arrive on the bus and pass the E2E check.";
     case Why::kGnssMissing:
@@ -61,7 +62,8 @@ const char* advice_for(Why why) {
     case Why::kOverload:
       return "Give the vision thread more CPU time: see the section realtime.";
     case Why::kMapFault:
-      return "GNSS and map lie apart: check the map's origin and its age.";
+      return "GNSS and map lie apart: check the map's datum and origin, and the place of the GNSS "
+             "antenna.";
     case Why::kCalibrationFault:
       return "A camera is not where the calibration says, or the time stamps are wrong; the log "
              "says which: check its mount or the clocks.";
@@ -71,7 +73,8 @@ const char* advice_for(Why why) {
     case Why::kInternalFault:
       return "Send the journal to the developers and restart the service.";
     case Why::kGnssContradicts:
-      return "Check the antenna's position; a disturbance by buildings or a tunnel ends by itself.";
+      return "Check the antenna's position, and the delay of GNSS if the log names one; a "
+             "disturbance by buildings or a tunnel ends by itself.";
     case Why::kOdometryContradicts:
       return "Check the wheel speed and the yaw rate; the slip of a wheel ends by itself.";
     case Why::kMatchContradicts:
@@ -99,20 +102,20 @@ HealthCheck check_health(const Telemetry& telemetry, Duration age) {
     return {false, fmt::format("the supervisor has said nothing for {:.0f} s. Restart the service.",
                                to_seconds(age))};
   }
-  const ApplianceView& view = telemetry.view;
-  if (!view.hung.empty()) {
-    return {false, fmt::format("a thread hangs: {}. Restart the service.", view.hung)};
+  if (!telemetry.view.hung.empty()) {
+    return {false, fmt::format("a thread hangs: {}. Restart the service.", telemetry.view.hung)};
   }
-  const std::string help = reasons_with_advice(view.why);
-  const Time invalid_since = telemetry.snapshot.estimation.invalid_since;
+  const EstimationSnapshot& estimation = telemetry.snapshot.estimation;
+  const std::string help = reasons_with_advice(estimation.why);
+  const Time invalid_since = estimation.invalid_since;
   const bool stays_lost =
       telemetry.time > invalid_since && telemetry.time - invalid_since > kLostGrace;
   const std::string since = stays_lost ? fmt::format(", no valid pose for {:.0f} s",
                                                      to_seconds(telemetry.time - invalid_since))
                                        : "";
   const std::string text =
-      fmt::format("{}{}{}{}", to_string(view.state), since, help.empty() ? "" : ": ", help);
-  switch (view.state) {
+      fmt::format("{}{}{}{}", to_string(estimation.state), since, help.empty() ? "" : ": ", help);
+  switch (estimation.state) {
     case HealthState::kTracking:
     case HealthState::kDegraded:
       return {true, text};
@@ -123,7 +126,7 @@ HealthCheck check_health(const Telemetry& telemetry, Duration age) {
     case HealthState::kAcquiring:
       break;
   }
-  return {!stays_lost && (view.why.bits() & kNeedsHelp.bits()) == 0, text};
+  return {!stays_lost && (estimation.why.bits() & kNeedsHelp.bits()) == 0, text};
 }
 
 }  // namespace bevloc::firmware

@@ -58,14 +58,12 @@ void log_tracker(const char* input, const OutcomeCounts& outcomes) {
 }
 
 void log_bus(const can::BusCounters& bus) {
-  const double mean_ms = bus.confirmed == 0 ? 0.0
-                                            : to_milliseconds(bus.confirmation_total) /
-                                                  static_cast<double>(bus.confirmed);
   spdlog::info(
       "CAN: {} sent, {} confirmed after {:.2f} ms on average and {:.2f} ms at most; dropped: {} "
       "replaced by newer frames, {} too old, {} while the bus was down",
-      bus.sent, bus.confirmed, mean_ms, to_milliseconds(bus.confirmation_max), bus.send_replaced,
-      bus.send_expired, bus.send_bus_down);
+      bus.sent, bus.confirmed, 1e3 * bus.confirmation_mean_s(),
+      to_milliseconds(bus.confirmation_max), bus.send_replaced, bus.send_expired,
+      bus.send_bus_down);
   spdlog::info(
       "CAN: {} received ({} timestamped by the controller, {} by the kernel), {} lost, {} overruns "
       "of "

@@ -1,5 +1,7 @@
 #include "firmware/status/view_log.h"
 
+#include <cstdlib>
+
 #include <spdlog/spdlog.h>
 
 namespace bevloc::firmware {
@@ -65,11 +67,11 @@ void ViewLog::note_stamps(int offset_ms) const {
   if ((offset_ms != 0) == (before_.stamp_offset_ms != 0)) return;
   if (offset_ms != 0) {
     spdlog::warn(
-        "cameras: their time stamps are {:+} ms off odometry, as the headings in bends show; check "
+        "cameras: their time stamps are {} ms too {} against the yaw rate, as bends show; check "
         "the clock of the cameras and the delay of the yaw rate",
-        offset_ms);
+        std::abs(offset_ms), offset_ms > 0 ? "late" : "early");
   } else {
-    spdlog::info("cameras: their time stamps agree with odometry again");
+    spdlog::info("cameras: their time stamps agree with the yaw rate again");
   }
 }
 

@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "common/plane.h"
+
 namespace bevloc {
 namespace {
 
@@ -148,15 +150,7 @@ Intrinsics resized(const Intrinsics& lens, int width_px, int height_px) {
 }
 
 bool CameraModel::shows_own_body(const Eigen::Vector2d& pixel) const {
-  bool inside = false;
-  for (size_t i = 0; i < own_body_px.size(); ++i) {
-    const Eigen::Vector2d& a = own_body_px[i];
-    const Eigen::Vector2d& b = own_body_px[(i + 1) % own_body_px.size()];
-    if ((a.y() > pixel.y()) == (b.y() > pixel.y())) continue;
-    const double edge_px = a.x() + (pixel.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-    if (pixel.x() < edge_px) inside = !inside;
-  }
-  return inside;
+  return is_in_ring(pixel, own_body_px);
 }
 
 CameraModel resized(const CameraModel& camera, int width_px, int height_px) {

@@ -1,4 +1,4 @@
-// Camera model: intrinsics with radial-tangential distortion, and extrinsics.
+// Camera model: intrinsics of a pinhole or a fisheye with distortion, and extrinsics.
 #pragma once
 
 #include <cstdint>

@@ -58,9 +58,7 @@ Result<ReferenceTrajectory> ReferenceTrajectory::parse(const std::string& text,
 }
 
 Result<ReferenceTrajectory> ReferenceTrajectory::read(const std::filesystem::path& file) {
-  const auto text = read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  return parse(*text, file.string());
+  return parse_file(file, parse);
 }
 
 std::optional<Se2> ReferenceTrajectory::at(Time time) const {

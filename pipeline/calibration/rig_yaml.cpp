@@ -7,6 +7,7 @@
 #include "common/files.h"
 #include "pipeline/calibration/rig_check.h"
 #include "pipeline/calibration/rig_keys.h"
+#include "pipeline/calibration/unit_quaternion.h"
 
 namespace bevloc {
 namespace {
@@ -53,19 +54,17 @@ std::vector<Eigen::Vector2d> read_own_body(YamlMap& yaml) {
 }
 
 Se3 read_vehicle_from_camera(YamlMap& yaml) {
-  constexpr double kNormTolerance = 1e-3;
   Se3 transform;
   const auto translation = yaml.require_list<double>(
       "translation_m", 3, between(-kMaxFromVehicleOriginM, kMaxFromVehicleOriginM));
   transform.translation_m = {translation[0], translation[1], translation[2]};
   const auto wxyz = yaml.require_list<double>("rotation_wxyz", 4);
-  const Eigen::Quaterniond rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  if (!(std::abs(rotation.norm() - 1.0) <= kNormTolerance)) {
-    yaml.reject("rotation_wxyz", fmt::format("a quaternion of norm {:.6g}", rotation.norm()),
-                "a unit quaternion");
-    return transform;
+  const auto rotation = rotation_from_quaternion(wxyz);
+  if (rotation) {
+    transform.rotation = *rotation;
+  } else {
+    yaml.reject("rotation_wxyz", rotation.error().message, "a unit quaternion");
   }
-  transform.rotation = rotation.normalized().toRotationMatrix();
   return transform;
 }
 
@@ -114,9 +113,7 @@ std::string format_camera(const CameraModel& camera) {
 }  // namespace
 
 Result<Rig> read_rig(const std::filesystem::path& path) {
-  const Result<std::string> text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  return parse_rig(*text, path.string());
+  return parse_file(path, parse_rig);
 }
 
 Rig read_rig_keys(YamlMap& yaml, RigKeys& keys) {

@@ -24,10 +24,13 @@ bool is_same(const Se2& a, const Se2& b) {
          std::abs(wrap_angle(a.yaw_rad - b.yaw_rad)) <= kSameMotion_rad;
 }
 
+/// An axis whose hypotheses reach no farther than this has a narrow range.
+constexpr double kNarrowRange_cells = 1.3;
+
 /// By how many cells the test frame is moved along an axis: by about one step, because a shorter
 /// movement cannot be told from none. Along an axis with a narrow range it is not moved.
 int cells_to_move(const HypothesisAxis& axis, double cell_m) {
-  if (axis.farthest() <= 1.3 * cell_m) return 0;
+  if (axis.farthest() <= kNarrowRange_cells * cell_m) return 0;
   return std::max(1, static_cast<int>(std::lround(axis.step / cell_m)));
 }
 

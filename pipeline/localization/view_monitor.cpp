@@ -93,7 +93,9 @@ ViewFault ViewMonitor::light_fault(const Blocks& blocks, const ShownTiles& shown
   constexpr int kPixels = kBlock * kBlock;
   constexpr int kWhiteSum = (kWhiteLevel - kLevelOffset) * kPixels;
   std::array<double, kRows * kCols> tiles{};
-  if (shown.none()) return ViewFault::kNone;
+  // Such an image never changes, and would soon count as frozen. A new start of the camera does not
+  // help.
+  if (shown.none()) return ViewFault::kDark;
   const auto shown_tiles = static_cast<double>(shown.count());
   const double shown_blocks = shown_tiles * kBlocksPerTile * kBlocksPerTile;
   int white = 0;

@@ -39,7 +39,8 @@ class ViewMonitor {
 
   /// `shown` is 1 for each pixel of a camera's network image that shows a part of its view, else 0.
   /// The other pixels are black, because they lie outside of the real image or on the own vehicle.
-  /// Tiles that are mostly black are not judged. Without a call, all tiles are judged.
+  /// Tiles that are mostly black are not judged. A camera without any other tile counts as dark.
+  /// Without a call, all tiles are judged.
   void set_shown(int camera, std::span<const uint8_t> shown);
 
   /// Adds the network input of a new frame of `camera`. The frame counts for movement only while

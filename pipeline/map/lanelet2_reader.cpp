@@ -76,8 +76,8 @@ class Lanelet2Reader {
       const LaneletKind kind = is_lanelet ? kind_of(relation.tags) : LaneletKind::kOther;
       if (is_lanelet) count_uses(relation, kind);
       if (kind == LaneletKind::kOther) {
-        report_.note(relation_kind(relation.tags), std::nullopt, "not for vehicles, no crossing",
-                     0.0, place_of(relation));
+        report_.note_without_line(relation_kind(relation.tags), "not for vehicles, no crossing",
+                                  place_of(relation));
         continue;
       }
       Result<Bound> left = bound(relation, "left");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/number_text.h"
+#include "pipeline/map/speed_unit.h"
 
 namespace bevloc {
 namespace {
@@ -72,8 +73,8 @@ std::optional<double> speed_mps(std::string_view text) {
   if (number.ec != std::errc() || !(value > 0.0 && value < 1000.0)) return std::nullopt;
   std::string_view unit = text.substr(static_cast<size_t>(number.ptr - text.data()));
   while (unit.starts_with(' ')) unit.remove_prefix(1);
-  if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return value / 3.6;
-  if (unit == "mph") return value * 0.44704;
+  if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return value / kKmh_per_mps;
+  if (unit == "mph") return value * kMps_per_mph;
   if (unit == "m/s") return value;
   return std::nullopt;
 }

@@ -9,6 +9,7 @@
 #include <boost/geometry/index/rtree.hpp>
 
 #include "common/plane.h"
+#include "pipeline/map/boost_box.h"
 
 namespace bevloc {
 namespace {
@@ -17,13 +18,6 @@ namespace geometry = boost::geometry;
 
 /// A line is examined at points this far apart.
 constexpr double kSpacing_m = 0.5;
-
-using BoostPoint = geometry::model::point<double, 2, geometry::cs::cartesian>;
-using Box = geometry::model::box<BoostPoint>;
-
-Box box_of(const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
-  return {{low.x(), low.y()}, {high.x(), high.y()}};
-}
 
 /// Calls visit(point) along a line, at the middle of pieces of equal length in each segment.
 template <typename Visit>
@@ -40,7 +34,7 @@ void for_each_point(const std::vector<Eigen::Vector2d>& line, Visit visit) {
 }  // namespace
 
 struct LineNeighbours::Index {
-  using Entry = std::pair<Box, size_t>;
+  using Entry = std::pair<BoostBox, size_t>;
 
   std::vector<Segment> segments;
   geometry::index::rtree<Entry, geometry::index::quadratic<16>> boxes;
@@ -51,7 +45,7 @@ LineNeighbours::~LineNeighbours() = default;
 
 void LineNeighbours::add(int64_t id, const std::vector<Eigen::Vector2d>& line) {
   for (size_t i = 0; i + 1 < line.size(); ++i) {
-    const Box box = box_of(line[i].cwiseMin(line[i + 1]), line[i].cwiseMax(line[i + 1]));
+    const BoostBox box = box_of(line[i].cwiseMin(line[i + 1]), line[i].cwiseMax(line[i + 1]));
     index_->boxes.insert({box, index_->segments.size()});
     index_->segments.push_back({line[i], line[i + 1], id});
   }
@@ -76,7 +70,7 @@ bool LineNeighbours::has_near(const Eigen::Vector2d& point, double reach_m,
     const Segment& segment = index_->segments[entry.second];
     return counts(segment) && distance_to_segment(point, segment.from, segment.to) <= reach_m;
   });
-  const Box around = box_of(point - reach, point + reach);
+  const BoostBox around = box_of(point - reach, point + reach);
   return index_->boxes.qbegin(geometry::index::intersects(around) && is_near) !=
          index_->boxes.qend();
 }

@@ -4,24 +4,20 @@
 #include <tuple>
 #include <utility>
 
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <boost/geometry/strategies/strategies.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
+
+#include "pipeline/map/boost_box.h"
 
 namespace bevloc {
 namespace {
 
 namespace bgi = boost::geometry::index;
-using Point = boost::geometry::model::point<double, 2, boost::geometry::cs::cartesian>;
-using Box = boost::geometry::model::box<Point>;
-using Entry = std::pair<Box, MapIndex::Segment>;
+using Entry = std::pair<BoostBox, MapIndex::Segment>;
 
-Box box_around(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d low = a.cwiseMin(b);
-  const Eigen::Vector2d high = a.cwiseMax(b);
-  return {{low.x(), low.y()}, {high.x(), high.y()}};
+BoostBox box_around(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return box_of(a.cwiseMin(b), a.cwiseMax(b));
 }
 
 std::vector<Entry> segments_of(const HdMap& map) {

@@ -182,7 +182,7 @@ Network::~Network() = default;
 Result<std::unique_ptr<Network>> Network::load(const std::string& path,
                                                const NetworkOptions& options) {
   if (options.threads < 1) return fail("network: {} threads, wanted at least 1", options.threads);
-  try {
+  return nn::loaded(path, [&]() -> Result<std::unique_ptr<Network>> {
     const nn::Graph graph = nn::read_onnx(path);
     check_ports(graph.inputs, input_contracts(), "input");
     check_ports(graph.outputs, output_contracts(), "output");
@@ -192,11 +192,7 @@ Result<std::unique_ptr<Network>> Network::load(const std::string& path,
     check_view_features(program);
     auto state = std::make_unique<State>(graph, program, options);
     return std::unique_ptr<Network>(new Network(std::move(state)));
-  } catch (const nn::LoadError& error) {
-    return fail("{}: {}", path, error.what());
-  } catch (const std::exception& error) {
-    return fail("{}: cannot be loaded: {}", path, error.what());
-  }
+  });
 }
 
 void Network::set_view_table(const ViewTable& table) {

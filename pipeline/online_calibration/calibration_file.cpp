@@ -73,9 +73,7 @@ Status save_learned(const LearnedCalibration& learned, const std::filesystem::pa
 }
 
 Result<LearnedCalibration> load_learned(const std::filesystem::path& path, uint32_t rig_crc32) {
-  const Result<std::string> text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  auto learned = parse_learned(*text, path.string());
+  auto learned = parse_file(path, parse_learned);
   if (learned && learned->rig_crc32 != rig_crc32) {
     return fail(
         "{}: found errors that were learned for another rig ({:08x}), wanted {:08x}; this file is "

@@ -38,6 +38,15 @@ CameraModel network_camera(const CameraModel& camera) {
   return network;
 }
 
+std::optional<Eigen::Vector2d> shown_place(const CameraModel& camera, const Intrinsics& network,
+                                           const Eigen::Vector2d& pixel) {
+  const Intrinsics& real = camera.intrinsics;
+  const auto place = real.project(network.ray(pixel));
+  const bool inside = place && place->x() >= -0.5 && place->x() <= real.width_px - 0.5 &&
+                      place->y() >= -0.5 && place->y() <= real.height_px - 0.5;
+  return inside && !camera.shows_own_body(*place) ? place : std::nullopt;
+}
+
 Rig network_rig(const Rig& rig) {
   Rig network;
   for (int i = 0; i < kCameraCount; ++i) network.cameras[i] = network_camera(rig.cameras[i]);

@@ -1,6 +1,8 @@
 // The virtual camera of the network: undistorted, scaled and cropped.
 #pragma once
 
+#include <optional>
+
 #include "pipeline/calibration/rig.h"
 
 namespace bevloc {
@@ -24,6 +26,12 @@ double real_pixels_per_network_pixel(const Intrinsics& real);
 /// pixels are square. The horizon of a level vehicle is at kNetworkHorizonRow in the principal
 /// column.
 CameraModel network_camera(const CameraModel& camera);
+
+/// The place in the image of `camera` that a pixel of its network image shows. Returns nothing if
+/// it lies outside of that image or on the own vehicle: such a pixel is black. `network`: the
+/// intrinsics of network_camera(camera).
+std::optional<Eigen::Vector2d> shown_place(const CameraModel& camera, const Intrinsics& network,
+                                           const Eigen::Vector2d& pixel);
 
 Rig network_rig(const Rig& rig);
 

@@ -53,10 +53,8 @@ RemapTable make_remap_table(const CameraModel& camera) {
   table.weights.resize(2 * static_cast<size_t>(table.taps) * kNetworkPixels);
   for (int i = 0; i < kNetworkPixels; ++i) {
     const Eigen::Vector2d pixel(i % kNetworkWidthPx, i / kNetworkWidthPx);
-    const auto source = real.project(network.ray(pixel));
-    const bool inside = source && source->x() >= -0.5 && source->x() <= real.width_px - 0.5 &&
-                        source->y() >= -0.5 && source->y() <= real.height_px - 0.5;
-    if (!inside || camera.shows_own_body(*source)) continue;
+    const auto source = shown_place(camera, network, pixel);
+    if (!source) continue;
     const std::span weights =
         std::span(table.weights).subspan(2 * static_cast<size_t>(table.taps) * i);
     table.first_col[i] = static_cast<uint16_t>(

@@ -86,9 +86,7 @@ void BandedMatcher::match(const MatchSide& bev, const MatchSide& map, SolverResu
   softmax(yaw_scores_, 1.0, result.yaw_probability);
   marginalise(lateral_, result.yaw_probability, result.y_probability);
   marginalise(longitudinal_, result.yaw_probability, result.x_probability);
-  result.correction = {posterior_mean(result.x_probability, hypotheses_.x_m),
-                       posterior_mean(result.y_probability, hypotheses_.y_m),
-                       posterior_mean(result.yaw_probability, hypotheses_.yaw_rad)};
+  result.correction = mean_correction(result, hypotheses_);
 }
 
 /// Writes the standardised profiles of all bands. Each profile has `lateral_reach` or

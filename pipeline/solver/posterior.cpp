@@ -51,6 +51,12 @@ double posterior_variance(std::span<const float> probability, const HypothesisAx
   return variance;
 }
 
+Se2 mean_correction(const SolverResult& result, const HypothesisGrid& hypotheses) {
+  return {posterior_mean(result.x_probability, hypotheses.x_m),
+          posterior_mean(result.y_probability, hypotheses.y_m),
+          posterior_mean(result.yaw_probability, hypotheses.yaw_rad)};
+}
+
 double parabola_vertex(std::span<const float> probability, const HypothesisAxis& axis) {
   const auto best = std::ranges::max_element(probability);
   const int i = static_cast<int>(best - probability.begin());

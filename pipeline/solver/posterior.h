@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "common/se2.h"
 #include "pipeline/solver/hypotheses.h"
 #include "pipeline/solver/solver_result.h"
 
@@ -22,6 +23,9 @@ void redistribute(std::span<const int> chosen, std::span<const double> scores, d
 
 double posterior_mean(std::span<const float> probability, const HypothesisAxis& axis);
 double posterior_variance(std::span<const float> probability, const HypothesisAxis& axis);
+
+/// The means of the three distributions of `result`.
+Se2 mean_correction(const SolverResult& result, const HypothesisGrid& hypotheses);
 
 /// The vertex of the parabola through the logarithms of the highest probability and its two
 /// neighbours. If the highest is the first or the last hypothesis, it is the value of that

@@ -40,9 +40,7 @@ void Refinement::refine(const MatchSide& bev, const MatchSide& map, SolverResult
   search_all_axes({coarse, kCoarseScale, 0.0F}, valley, pose, result);
   search_all_axes({coarse, kCoarseScale, kLeastLikely}, valley, pose, result);
   search_all_axes({fine, 1.0, kLeastLikely}, valley, pose, result);
-  result.correction = {posterior_mean(result.x_probability, hypotheses_.x_m),
-                       posterior_mean(result.y_probability, hypotheses_.y_m),
-                       posterior_mean(result.yaw_probability, hypotheses_.yaw_rad)};
+  result.correction = mean_correction(result, hypotheses_);
 }
 
 void Refinement::search_all_axes(const Round& round, const ScoreValley& valley,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/map/map_points.h"
 #include "sim/world/path.h"
 #include "sim/world/road_side.h"
 #include "sim/world/world_generator.h"
@@ -13,20 +14,6 @@ namespace {
 
 /// How densely the vehicle's way is sampled to cut the map along it.
 constexpr double kCutStep_s = 0.5;
-
-/// Moves every point of the map.
-template <typename Move>
-void move_points(HdMap& map, Move move) {
-  const auto move_all = [&move](Polyline& points) {
-    for (Eigen::Vector2d& point : points) point = move(point);
-  };
-  for (MapElement& element : map.elements) move_all(element.points);
-  for (Lane& lane : map.lanes) {
-    move_all(lane.left);
-    move_all(lane.right);
-    move_all(lane.centerline);
-  }
-}
 
 void shift(HdMap& map, const FaultAmounts& by, const Drive& drive) {
   const Eigen::Vector2d pivot = drive.at(0.0).map_from_vehicle.translation();
@@ -110,15 +97,10 @@ void replace(HdMap& map, const FaultAmounts& by, const Drive& drive) {
 }
 
 void displace_borders(HdMap& map, double outwards_m) {
-  const RoadSide road(map);
-  for (MapElement& element : map.elements) {
-    if (element.element_class != ElementClass::kRoadBoundary) continue;
-    if (element.points.size() < 2 || polyline_length(element.points) <= 0.0) continue;
-    const Path path(element.points);
-    const auto side = road.of(path);
-    if (!side) continue;
-    const double right_m = side->is_right ? -outwards_m : outwards_m;
-    element.points = path.parallel(0.0, path.length_m(), right_m);
+  for (const RoadsideBoundary& boundary : boundaries_beside_road(map)) {
+    const double right_m = boundary.side.is_right ? -outwards_m : outwards_m;
+    map.elements[boundary.element].points =
+        boundary.path.parallel(0.0, boundary.path.length_m(), right_m);
   }
 }
 

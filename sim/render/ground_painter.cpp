@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/plane.h"
 #include "common/target_clones.h"
 
 namespace bevloc::sim {
@@ -28,18 +29,12 @@ Box box_of(const StrokeSegment& segment, double width_m) {
 
 /// Whether the ring covers the whole area. May return false for some rings that do.
 bool covers(const Ring& ring, const Box& area) {
-  const Eigen::Vector2d centre = area.center();
-  bool inside = false;
   for (size_t i = 0; i < ring.size(); ++i) {
     const Eigen::Vector2d& a = ring[i];
     const Eigen::Vector2d& b = ring[(i + 1) % ring.size()];
     if (area.intersects(Box(a.cwiseMin(b), a.cwiseMax(b)))) return false;
-    const bool crosses = (a.y() > centre.y()) != (b.y() > centre.y());
-    if (crosses && centre.x() < a.x() + (b.x() - a.x()) * (centre.y() - a.y()) / (b.y() - a.y())) {
-      inside = !inside;
-    }
   }
-  return inside;
+  return is_in_ring(area.center(), ring);
 }
 
 /// Packs the planes into texels.

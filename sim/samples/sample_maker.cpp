@@ -1,6 +1,5 @@
 #include "sim/samples/sample_maker.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "pipeline/map/map_index.h"
@@ -107,22 +106,25 @@ void copy_as_planes(const RgbImage& image, uint8_t* planes) {
   }
 }
 
-/// Makes the pixels black that show the own vehicle in the image of the real camera.
-void blacken_own_body(const CameraModel& real, RgbImage& image) {
-  if (real.own_body_px.empty()) return;
-  const Intrinsics network = network_camera(real).intrinsics;
-  for (int v = 0; v < image.height; ++v) {
-    for (int u = 0; u < image.width; ++u) {
-      const auto pixel = real.intrinsics.project(network.ray({u, v}));
-      if (pixel && real.shows_own_body(*pixel)) std::fill_n(image.row(v) + 3 * u, 3, uint8_t{0});
+/// Makes the pixels black that the real cameras do not show, because the daemon does not see them
+/// either.
+void blacken_unseen(const Rig& real, Sample& sample) {
+  constexpr size_t kPixels = kImagesSize / kCameraCount / 3;
+  for (size_t camera = 0; camera < kCameraCount; ++camera) {
+    const Intrinsics& network = sample.rig.cameras[camera].intrinsics;
+    uint8_t* planes = sample.images.data() + camera * 3 * kPixels;
+    for (size_t i = 0; i < kPixels; ++i) {
+      const Eigen::Vector2d pixel(static_cast<double>(i % kNetworkWidthPx),
+                                  static_cast<double>(i / kNetworkWidthPx));
+      if (shown_place(real.cameras[camera], network, pixel)) continue;
+      for (size_t colour = 0; colour < 3; ++colour) planes[colour * kPixels + i] = 0;
     }
   }
 }
 
 /// Renders the images of the sample's cameras (black for missing ones) and sets their motions.
-/// `real` are the cameras behind the sample's rig.
 void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisances& nuisances,
-                 const Rig& real, uint64_t seed, Sample& sample) {
+                 uint64_t seed, Sample& sample) {
   Random random(seed_for(seed, "body and cameras"));
   const BodyMotion body{.pitch_rad = random.normal(0.0, nuisances.body.tilt_rad),
                         .roll_rad = random.normal(0.0, nuisances.body.tilt_rad),
@@ -143,7 +145,6 @@ void take_images(Renderer& renderer, const Se2& map_from_vehicle, const Nuisance
     renderer.render(camera, map_from_vehicle * passage.true_motion(offset_s), stance,
                     time_s + offset_s, conditions, mix_seed(seed_for(seed, "noise") + i), image);
     if (nuisances.looks != CameraLooks{}) apply(looks[i], image);
-    blacken_own_body(real.cameras[i], image);
     copy_as_planes(image, sample.images.data() + i * (kImagesSize / kCameraCount));
   }
 }
@@ -155,16 +156,17 @@ struct WorldViews {
   MapRasterizer localizer_map;  ///< rasterizer of the map with map errors
 };
 
-Sample make_sample(const Nuisances& nuisances, const Rig& usual_rig, uint64_t seed,
+/// `given`: the rig of the stream, null if it has none.
+Sample make_sample(const Nuisances& nuisances, const Rig* given, uint64_t seed,
                    const Se2& map_from_vehicle, WorldViews& views) {
   Random random(seed_for(seed, "prior"));
   Sample sample;
   sample.correction = random_correction(random);
-  const Rig real =
-      nuisances.rig_variety > 0.0 ? random_rig(nuisances.rig_variety, seed) : usual_rig;
-  sample.rig = network_rig(real);
+  if (nuisances.rig_variety > 0.0) given = nullptr;
+  sample.rig = network_rig(given != nullptr ? *given : random_rig(nuisances.rig_variety, seed));
   sample.cameras = random_cameras(nuisances.missing_cameras, random);
-  take_images(views.renderer, map_from_vehicle, nuisances, real, seed, sample);
+  take_images(views.renderer, map_from_vehicle, nuisances, seed, sample);
+  if (given != nullptr) blacken_unseen(*given, sample);
   sample.raster_truth.resize(kRasterSize);
   views.true_map.draw(map_from_vehicle, sample.raster_truth);
   sample.raster_prior.resize(kRasterSize);
@@ -213,12 +215,11 @@ void make_samples_of_world(const SampleStream& stream, uint64_t world_number, ui
   const HdMap localizer_map = with_errors(surveyed_map, of_world.map_errors, world_seed);
   const MapIndex true_index(world.map);
   const MapIndex localizer_index(localizer_map);
-  const Rig rig = stream.rig != nullptr ? *stream.rig : nominal_rig();
   WorldViews views{Renderer(world), MapRasterizer(true_index), MapRasterizer(localizer_index)};
   for (uint64_t i = first; i < kSamplesPerWorld; ++i) {
     const uint64_t seed = sample_seed(stream, world_number * kSamplesPerWorld + i);
     const Nuisances nuisances = drawn_for_sample(of_world, stream.training, seed);
-    if (!deliver(make_sample(nuisances, rig, seed, poses[i], views))) return;
+    if (!deliver(make_sample(nuisances, stream.rig, seed, poses[i], views))) return;
   }
 }
 

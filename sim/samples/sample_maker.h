@@ -50,8 +50,8 @@ struct SampleStream {
   /// generated towns.
   const HdMap* map = nullptr;
   /// If set, the vehicle has these cameras instead of the simulator's own, except in samples with a
-  /// Nuisances::rig_variety. Their lenses do not count, because the network's images are rendered
-  /// directly. Pixels that show the own vehicle are black.
+  /// Nuisances::rig_variety. Their distortion does not count, because the network's images are
+  /// rendered directly. Pixels outside of their images or on the own vehicle are black.
   const Rig* rig = nullptr;
   /// If set, these photographs cover surfaces of every world. They must outlive the stream.
   const PhotoLibrary* photos = nullptr;

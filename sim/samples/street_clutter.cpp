@@ -108,13 +108,9 @@ class BoundaryClutter {
 };
 
 void clutter_boundaries(const StreetClutter& clutter, Random& random, World& world) {
-  const RoadSide road_side(world.map);
-  for (const MapElement& element : world.map.elements) {
-    if (element.element_class != ElementClass::kRoadBoundary) continue;
-    if (polyline_length(element.points) < kShortest_m) continue;
-    const Path path(element.points);
-    const auto side = road_side.of(path);
-    if (side) BoundaryClutter(path, side->is_right ? -1.0 : 1.0, random, world).add(clutter);
+  for (const RoadsideBoundary& boundary : boundaries_beside_road(world.map, kShortest_m)) {
+    const double outside = boundary.side.is_right ? -1.0 : 1.0;
+    BoundaryClutter(boundary.path, outside, random, world).add(clutter);
   }
 }
 

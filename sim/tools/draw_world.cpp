@@ -10,6 +10,7 @@
 #include "common/option_checks.h"
 #include "common/picture_file.h"
 #include "pipeline/map/map_loader.h"
+#include "pipeline/map/map_points.h"
 #include "sim/world/path.h"
 #include "sim/world/world_generator.h"
 
@@ -164,17 +165,10 @@ struct Square {
 
 /// The square that contains the whole map.
 Square square_around(const HdMap& map) {
-  if (map.elements.empty()) return {};
-  Eigen::Vector2d low = map.elements.front().points.front();
-  Eigen::Vector2d high = low;
-  for (const MapElement& element : map.elements) {
-    for (const Eigen::Vector2d& point : element.points) {
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-  }
   constexpr double kMargin_m = 25.0;
-  return {0.5 * (low + high), (high - low).maxCoeff() + 2.0 * kMargin_m};
+  const Eigen::AlignedBox2d bounds = bounds_of(map);
+  if (bounds.isEmpty()) return {};
+  return {bounds.center(), bounds.sizes().maxCoeff() + 2.0 * kMargin_m};
 }
 
 struct Options {

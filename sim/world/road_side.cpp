@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace bevloc::sim {
 namespace {
@@ -66,6 +67,20 @@ std::optional<RoadSide::Side> RoadSide::of(const Path& boundary) const {
   }
   if (!std::isfinite(least_m)) return std::nullopt;
   return Side{votes > 0, least_m};
+}
+
+std::vector<RoadsideBoundary> boundaries_beside_road(const HdMap& map, double least_m) {
+  const RoadSide road(map);
+  std::vector<RoadsideBoundary> boundaries;
+  for (size_t i = 0; i < map.elements.size(); ++i) {
+    const MapElement& element = map.elements[i];
+    if (element.element_class != ElementClass::kRoadBoundary) continue;
+    const double length_m = polyline_length(element.points);
+    if (length_m <= 0.0 || length_m < least_m) continue;
+    Path path(element.points);
+    if (const auto side = road.of(path)) boundaries.push_back({i, std::move(path), *side});
+  }
+  return boundaries;
 }
 
 }  // namespace bevloc::sim

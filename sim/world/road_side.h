@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <vector>
 
 #include "pipeline/map/hd_map.h"
 #include "sim/world/path.h"
@@ -29,5 +30,15 @@ class RoadSide {
 
   std::unordered_map<uint64_t, Polyline> centres_;  ///< points of centre lines, by their cell
 };
+
+/// A road boundary that has a lane near.
+struct RoadsideBoundary {
+  size_t element;  ///< index into HdMap::elements
+  Path path;
+  RoadSide::Side side;
+};
+
+/// The road boundaries with a lane near that are at least `least_m` long, in the order of the map.
+std::vector<RoadsideBoundary> boundaries_beside_road(const HdMap& map, double least_m = 0.0);
 
 }  // namespace bevloc::sim

@@ -6,7 +6,10 @@
 #include "command/doctor/config_checks.h"
 #include "command/doctor/doctor_command.h"
 #include "command/doctor/machine_checks.h"
+#include "pipeline/calibration/rig_yaml.h"
 #include "tests/command/fake_machine.h"
+#include "tests/support/demo_rig.h"
+#include "tests/support/turned_rig.h"
 
 namespace bevloc::command {
 namespace {
@@ -227,6 +230,7 @@ TEST_F(DoctorTest, ReadsTheRecordingsOfReplay) {
   EXPECT_EQ(findings[0].level, Level::kOk) << findings[0].found;
   EXPECT_EQ(findings[1].level, Level::kProblem);
   EXPECT_THAT(findings[1].found, HasSubstr("drive/front/frames.txt"));
+  EXPECT_THAT(findings[1].wanted, HasSubstr("a picture folder in cameras.recording"));
 }
 
 TEST_F(DoctorTest, LooksForTheConfiguredGpioLines) {
@@ -275,6 +279,8 @@ TEST_F(DoctorTest, ReadsTheStateOfTheUnit) {
   EXPECT_EQ(findings("active", "disabled").back().fix, "sudo systemctl enable bevlocd");
   machine_.programs["systemctl"] = "LoadState=not-found\n";
   EXPECT_THAT(check_unit(machine_).front().found, HasSubstr("no bevlocd.service"));
+  EXPECT_THAT(check_unit(machine_).front().fix, HasSubstr("apt install ./bevloc_*.deb"))
+      << "the unit alone lacks its user and its program";
 }
 
 TEST_F(DoctorTest, TellsWhyAUnitThatIsThereIsNotLoaded) {
@@ -289,6 +295,24 @@ TEST_F(DoctorTest, TellsWhyAUnitThatIsThereIsNotLoaded) {
     EXPECT_THAT(finding(state).found, HasSubstr(state));
     EXPECT_EQ(finding(state).fix, "systemd-analyze verify bevlocd.service");
   }
+}
+
+TEST_F(DoctorTest, JudgesWhatTheCamerasOfTheRigShow) {
+  firmware::Config config;
+  config.file = "/etc/bevlocd.yaml";
+  config.rig_file = machine_.real("/rig.yaml");
+  const auto rig_finding = [&](double down_deg) {
+    machine_.put("/rig.yaml", format_rig(test::turned_down(test::demo_rig(), down_deg)));
+    return check_files(config).front();
+  };
+  EXPECT_EQ(rig_finding(0.0).level, Level::kOk);
+  const Finding warning = rig_finding(30.0);
+  EXPECT_EQ(warning.level, Level::kWarning);
+  EXPECT_THAT(warning.found, HasSubstr("below the horizon (front_left 35 %,"));
+  EXPECT_THAT(warning.fix, StartsWith("bevloc eval rig " + config.rig_file.string()));
+  const Finding problem = rig_finding(40.0);
+  EXPECT_EQ(problem.level, Level::kProblem);
+  EXPECT_EQ(problem.fix, "bevlocd --config /etc/bevlocd.yaml --check-config");
 }
 
 TEST_F(DoctorTest, AConfigurationWithAMistakeIsAProblem) {

@@ -9,6 +9,7 @@
 #include "command/init/init_command.h"
 #include "common/files.h"
 #include "evaluation/drive/drive_config.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text.h"
 
@@ -28,8 +29,7 @@ class InitTest : public testing::Test {
     InitCommand command(&reader_);
     command.declare(app);
     arguments.insert(arguments.begin(), {"init", "--out", file_.string()});
-    std::ranges::reverse(arguments);  // as CLI11 takes them
-    app.parse(arguments);
+    test::parse(app, std::move(arguments));
     std::istringstream in(typed == nullptr ? "" : typed);
     Dialog dialog(in, said_, typed != nullptr);
     return command.run(offers_, dialog);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <string>
@@ -11,6 +10,7 @@
 #include <unistd.h>
 
 #include "command/listen/listen_command.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::command {
@@ -40,8 +40,7 @@ class ListenTest : public testing::Test {
   void parse(std::vector<std::string> words) {
     command_.declare(app_);
     words.insert(words.begin(), "listen");
-    std::ranges::reverse(words);  // as CLI11 wants them
-    app_.parse(words);
+    test::parse(app_, std::move(words));
   }
 
   CLI::App app_;

@@ -21,12 +21,13 @@ class OffersTest : public testing::Test {
     const std::string usb = "/sys/devices/pci/usb1/" + port;
     machine_.put(usb + "/idVendor", "1209\n");
     if (!serial.empty()) machine_.put(usb + "/serial", serial + "\n");
-    for (int index : {0, 1}) {
-      const std::string node = fmt::format("/sys/class/video4linux/video{}", first_number + index);
-      machine_.put(node + "/index", fmt::format("{}\n", index));
-      machine_.put(node + "/name", "HD Camera\n");
-      fs::create_directory_symlink(machine_.real(usb), machine_.real(node + "/device"));
-    }
+    for (int index : {0, 1}) add_node(first_number + index, index, "HD Camera", usb);
+  }
+  void add_node(int number, int index, const std::string& card, const std::string& device) {
+    const std::string node = fmt::format("/sys/class/video4linux/video{}", number);
+    machine_.put(node + "/index", fmt::format("{}\n", index));
+    machine_.put(node + "/name", card + "\n");
+    fs::create_directory_symlink(machine_.real(device), machine_.real(node + "/device"));
   }
   /// Adds the link to a node that udev makes in /dev/v4l/by-id or by-path.
   void add_link(const std::string& folder, const std::string& name, int number) {
@@ -86,6 +87,21 @@ TEST_F(OffersTest, TakeThePortOfCamerasWithOneSerialNumberOrNoneAndWithoutLinks)
   add_camera(2, "1-3", "0001");
   add_camera(4, "1-4", "");
   EXPECT_THAT(ids(), ElementsAre("1-2", "1-3", "1-4"));
+}
+
+/// As on a Jetson with GMSL cameras: one device, and a card name for each camera.
+TEST_F(OffersTest, ListAllCamerasOfOneReceiver) {
+  const std::string receiver = "/sys/devices/platform/tegra-capture-vi";
+  fs::create_directories(machine_.real(receiver));
+  for (int index : {0, 1}) {
+    add_node(index, index, fmt::format("vi-output, isx031 30-001{}", index), receiver);
+    add_link("by-path", fmt::format("platform-tegra-capture-vi-video-index{}", index), index);
+  }
+  const auto cameras = offers_of(machine_, {}).v4l2;
+  ASSERT_EQ(cameras.size(), 2U);
+  EXPECT_EQ(cameras[0].id, "platform-tegra-capture-vi-video-index0");
+  EXPECT_EQ(cameras[1].id, "platform-tegra-capture-vi-video-index1");
+  EXPECT_EQ(cameras[1].name, "vi-output, isx031 30-0011");
 }
 
 TEST_F(OffersTest, ListsOnlyCanInterfaces) {

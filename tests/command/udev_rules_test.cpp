@@ -6,6 +6,7 @@
 #include "command/init/answers.h"
 #include "command/udev/udev_rules_command.h"
 #include "common/files.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::command {
@@ -103,14 +104,9 @@ Status run_with_gpio(const std::filesystem::path& folder, const std::string& gpi
                         .model = tree / "models/nano.onnx",
                         .can = "can0"};
   std::ofstream(folder / "bevlocd.yaml") << configuration_text(answers, folder) << gpio;
-  CLI::App app;
-  UdevRulesCommand command(nullptr);
-  command.declare(app);
-  std::vector<std::string> arguments{"udev-rules", "--config", (folder / "bevlocd.yaml").string(),
-                                     "--out", out.string()};
-  std::ranges::reverse(arguments);  // as CLI11 takes them
-  app.parse(arguments);
-  return command.run();
+  return test::run_command<UdevRulesCommand>(
+      {"udev-rules", "--config", (folder / "bevlocd.yaml").string(), "--out", out.string()},
+      nullptr);
 }
 
 TEST(UdevRulesFile, IsWrittenOnSuccessOnly) {

@@ -69,6 +69,17 @@ TEST_F(CheckOutputs, EachOutputIsComparedWithEachInput) {
   EXPECT_THAT(refused.error().message, HasSubstr("link: found a file to write that is also read"));
 }
 
+TEST_F(CheckOutputs, AreComparedWithEachOther) {
+  EXPECT_TRUE(check_outputs({file("a"), file("b"), "", ""}, {}));
+  EXPECT_TRUE(check_outputs({"/dev/null", "/dev/null"}, {}));
+  for (const std::string& second : {file("a"), file("./a"), folder_.path().string() + "/x/../a"}) {
+    const Status refused = check_outputs({file("a"), "", second}, {});
+    ASSERT_FALSE(refused) << second;
+    EXPECT_EQ(refused.error().message,
+              second + ": found one name for two files to write, wanted two names");
+  }
+}
+
 TEST_F(CheckOutputs, OfTheCampaign) {
   const Words inputs{"own.yaml", "rig.yaml", "town.osm", "matches.csv"};
   const Words options{"--config",       file("own.yaml"), "--matches", file("matches.csv"), "--map",

@@ -1,9 +1,9 @@
 #include "evaluation/choice_option.h"
 
-#include <algorithm>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/support/command_line.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -19,10 +19,7 @@ class ChoiceOption : public testing::Test {
     add_choice(app_, "--rows", rows_, {{"solvers", Rows::kSolvers}, {"all", Rows::kAll}}, "Rows");
   }
 
-  void parse(std::vector<std::string> arguments) {
-    std::ranges::reverse(arguments);  // as CLI11 expects
-    app_.parse(arguments);
-  }
+  void parse(std::vector<std::string> arguments) { test::parse(app_, std::move(arguments)); }
 
   CLI::App app_;
   Rows rows_ = Rows::kAll;

@@ -84,6 +84,28 @@ TEST(OptionChecks, AnOutputFileCanBeWritten) {
   EXPECT_EQ(message_of(output_name(), missing), "") << "the command may create the folder";
 }
 
+/// A new file takes the place of the earlier one, so the folder must be writable.
+TEST(OptionChecks, AReplacedFileNeedsAFolderThatMayBeWritten) {
+  using std::filesystem::perms;
+  const test::TemporaryFolder folder;
+  const std::string there = folder / "rig.yaml";
+  std::ofstream(there) << "a rig";
+  std::filesystem::permissions(there, perms::owner_read);
+  test::without_capabilities([&] {
+    EXPECT_EQ(message_of(replaced_file(), there), "");
+    EXPECT_EQ(message_of(replaced_file(), folder / "new.yaml"), "");
+  });
+  std::filesystem::permissions(there, perms::owner_read | perms::owner_write);
+  std::filesystem::permissions(folder.path(), perms::owner_read | perms::owner_exec);
+  test::without_capabilities([&] {
+    EXPECT_THAT(message_of(replaced_file(), there),
+                HasSubstr("found no way to write in the folder"));
+  });
+  EXPECT_THAT(message_of(replaced_file(), "/dev/null"), HasSubstr("found a folder or a device"));
+  EXPECT_THAT(message_of(replaced_file(), folder / "no/a.yaml"), HasSubstr("found no folder"));
+  EXPECT_THAT(message_of(replaced_file(), "-"), HasSubstr("found '-'"));
+}
+
 TEST(OptionChecks, AnOutputFileNeedsAFolderThatMayBeWritten) {
   const test::TemporaryFolder folder;
   std::filesystem::permissions(

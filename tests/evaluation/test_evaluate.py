@@ -75,6 +75,25 @@ class EvaluateTest(unittest.TestCase):
             with self.assertRaisesRegex(self.script.BadInput, "found no program that runs"):
                 self.script.run_drive(1, None, self.config, self.drive_options())
 
+    def test_a_map_file_of_the_configuration_is_an_imported_map_too(self) -> None:
+        program = self.config.parent / "bevlocd"
+        program.write_text(
+            '#!/bin/sh\nwhile [ "$1" != --out ]; do shift; done; mkdir -p "$2"; cd "$2"\n'
+            "echo '{}' > result.json; : > poses.csv\n"
+        )
+        program.chmod(0o755)
+        for section, map_file, imported in (
+            ("", None, False),
+            ("map: {procedural_seed: 3}", None, False),
+            ("map: {procedural_seed: 3}", Path("b.osm"), True),
+            ("map: {file: a.osm}", None, True),
+            ("map: {file: a.osm}", Path("b.osm"), True),
+        ):
+            self.config.write_text(f"calibration: {{rig: a.yaml}}\n{section}\n")
+            with mock.patch.object(self.script, "PROGRAM", program):
+                drive = self.script.run_drive(1, map_file, self.config, self.drive_options())
+            self.assertEqual(drive.imported, imported, (section, map_file))
+
     def drive_options(self) -> argparse.Namespace:
         return argparse.Namespace(out=self.config.parent, duration=1.0)
 

@@ -23,9 +23,8 @@
 #include "can/messages/message_table.h"
 #include "can/messages/vehicle_encoder.h"
 #include "can/messages/vehicle_input.h"
-#include "can/publisher/solution_fd.h"
 #include "common/result.h"
-#include "tests/fuzz/finite_samples.h"
+#include "tests/fuzz/can_checks.h"
 
 namespace bevloc::fuzz {
 namespace {
@@ -144,17 +143,10 @@ Status check_read(Random& random, FrameSource& source, can::VehicleInput& input,
   const size_t size =
       random.one_in(16) ? kWrongSizes[random.below(kWrongSizes.size())] : can::raw_from(drawn).size;
   const can::ReadFrame read = can::frame_from(draw_raw(random, drawn), size);
-  if (const auto* error = std::get_if<can::ErrorFrame>(&read)) monitor.take(*error);
+  const char* const mistake = mistake_in(read, input, monitor, now);
+  if (mistake != nullptr) return fail("found {}", mistake);
   const auto* frame = std::get_if<can::Frame>(&read);
   if (frame == nullptr) return {};
-  if (!can::is_valid_length(frame->format, frame->length))
-    return fail("found a frame of invalid length");
-  if (!is_finite(input.accept({*frame, now}))) return fail("found a sample that is not finite");
-  if (frame->length == can::loc_solution::kMessage.length) {
-    for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
-      can::part_of_solution(*frame, part, {});
-    }
-  }
   const std::string line = can::candump_line(now.time_since_epoch(), "can0", *frame);
   const auto entry = can::parse_candump_line(line, "written");
   if (!entry || entry->frame != *frame)

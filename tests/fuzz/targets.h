@@ -1,4 +1,4 @@
-// What is fuzzed: one function for each parser of data that comes from outside. libFuzzer calls it
+// What is fuzzed: one function for each large parser of data from outside. libFuzzer calls it
 // with the inputs that it invents (script/fuzz), fuzz_corpus_test with the stored ones.
 #pragma once
 

@@ -57,6 +57,12 @@ TEST_F(BadInputTest, UnknownKey) {
   expect_config_refused("rate_hz: 10", "rate_hz: 10\n  colour: red", {"config.yaml:7", "colour"});
 }
 
+TEST_F(BadInputTest, NoPhotographs) {
+  expect_config_refused("  duration_s: 60\n",
+                        "  duration_s: 60\n  street: {photos: /nowhere/photos}\n",
+                        {"/nowhere/photos"});
+}
+
 TEST_F(BadInputTest, BrokenModel) {
   write_file(scratch_ / "broken.onnx", "not a model");
   expect_refused("--config " + config_with_model((scratch_ / "broken.onnx").string()) +

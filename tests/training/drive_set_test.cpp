@@ -1,7 +1,6 @@
 // Which framesets of recorded drives become samples, and in which part they are.
 #include "training/drives/drive_set.h"
 
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -18,21 +17,6 @@ namespace fs = std::filesystem;
 using test::demo_rig;
 using test::PictureDrive;
 using testing::HasSubstr;
-
-TEST(Framesets, JoinFramesOfTheSameMoment) {
-  std::array<std::vector<Time>, kCameraCount> times;
-  const auto at = [](int ms) { return Time(std::chrono::milliseconds(ms)); };
-  times[0] = {at(0), at(100), at(200)};
-  times[1] = {at(30), at(151)};
-  const auto framesets = framesets_of(times);
-  ASSERT_EQ(framesets.size(), 3U);
-  EXPECT_EQ(framesets[0].present.count(), 2U);
-  EXPECT_EQ(framesets[1].present.to_ulong(), 1U);
-  EXPECT_EQ(framesets[2].present.count(), 2U) << "49 ms apart";
-  EXPECT_EQ(framesets[2].time, at(151));
-  EXPECT_EQ(framesets[2].frame[0], 2U);
-  EXPECT_EQ(framesets[2].frame[1], 1U);
-}
 
 TEST(DriveSet, TakesAFramesetEveryMetreAndHoldsSquaresBack) {
   const PictureDrive drive(1000);  // 1,000 m in ten squares

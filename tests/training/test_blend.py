@@ -13,8 +13,9 @@ import onnx
 import torch
 
 from training import blend
-from training.checkpoint import load_network, nuisances_of
-from training.export_onnx import build_model
+from training.checkpoint import load_network, nuisances_of, read_checkpoint
+from training.errors import CheckpointError
+from training.export_onnx import RANGE_KEYS, build_model, rig_statements, stored_ranges
 from training.graph import folded_convolutions
 from training.models import PRESETS, BevNetwork
 from training.models.config import ModelConfig, network_config
@@ -23,11 +24,22 @@ from training.onnx_graph import FloatOnnxBackend
 LAST = "head.second.weight"
 
 
-def write_network(seed: int, path: Path, config: ModelConfig = PRESETS["nano"]) -> BevNetwork:
+def write_network(
+    seed: int,
+    path: Path,
+    config: ModelConfig = PRESETS["nano"],
+    rig: dict[str, str] | None = None,
+) -> BevNetwork:
     torch.manual_seed(seed)
     net = BevNetwork(config).eval()
-    onnx.save(build_model(net, folded_convolutions(net), FloatOnnxBackend()), str(path))
+    model = build_model(net, folded_convolutions(net), FloatOnnxBackend(), rig=rig)
+    onnx.save(model, str(path))
     return net
+
+
+def ranges(focal_px: str, height_m: str) -> dict[str, str]:
+    """Statements about the rigs of a training."""
+    return rig_statements() | dict(zip(RANGE_KEYS, (focal_px, height_m)))
 
 
 class Blend(unittest.TestCase):
@@ -66,6 +78,27 @@ class Blend(unittest.TestCase):
 
     def test_the_export_measures_on_street_samples(self) -> None:
         self.assertEqual(nuisances_of(self.run_program("0.5")), "street")
+
+    def ranges_of_the_export(self) -> list[str | None]:
+        """The ranges that a model of the checkpoint states."""
+        path = self.run_program("0.5")
+        config = read_checkpoint(path)["config"]
+        statements = rig_statements(nuisances_of(path), stored=stored_ranges(config))
+        return [statements.get(key) for key in RANGE_KEYS]
+
+    def test_the_export_states_the_rigs_of_both_networks(self) -> None:
+        self.assertEqual(self.ranges_of_the_export(), [None, None])
+        write_network(1, self.files[1], rig=ranges("150 420", "1.2 3.2"))
+        self.assertEqual(self.ranges_of_the_export(), ["150 420", "1.2 3.2"])
+        write_network(0, self.files[0], rig=rig_statements("street"))
+        self.assertEqual(self.ranges_of_the_export(), ["150 420", "0.6 3.2"])
+
+    def test_refuses_a_model_without_proper_ranges(self) -> None:
+        half = {key: text for key, text in ranges("150 420", "").items() if text}
+        for rig in (half, ranges("150 420", "2"), ranges("150", "x y")):
+            write_network(1, self.files[1], rig=rig)
+            with self.assertRaisesRegex(CheckpointError, "second.onnx: found '150.*wanted two num"):
+                self.run_program("0.5")
 
     def test_refuses_a_share_beyond_1(self) -> None:
         with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()) as errors:

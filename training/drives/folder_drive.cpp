@@ -10,13 +10,8 @@ Result<std::unique_ptr<RecordedDrive>> FolderDrive::open(const std::filesystem::
   if (!reference) return tl::unexpected(reference.error());
   auto frames = drivers::load_recordings(folder);
   if (!frames) return tl::unexpected(frames.error());
-  std::array<std::vector<Time>, kCameraCount> times;
-  for (int camera = 0; camera < kCameraCount; ++camera) {
-    for (const drivers::RecordedFrame& frame : (*frames)[camera]) {
-      times[camera].push_back(frame.time);
-    }
-  }
-  DriveIndex index{folder.string(), rig, std::move(*reference), framesets_of(times)};
+  DriveIndex index{folder.string(), rig, std::move(*reference),
+                   drivers::framesets_of(drivers::times_of(*frames))};
   return std::unique_ptr<RecordedDrive>(new FolderDrive(std::move(index), std::move(*frames)));
 }
 

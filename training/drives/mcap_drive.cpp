@@ -73,13 +73,13 @@ Result<std::unique_ptr<RecordedDrive>> McapDrive::open(
   if (!used_rig) return tl::unexpected(used_rig.error());
   auto reference = reference_of(*recording, kind, files.front().parent_path(), name);
   if (!reference) return tl::unexpected(reference.error());
-  std::array<std::vector<Time>, kCameraCount> times;
+  drivers::FrameTimes times;
   for (int camera = 0; camera < kCameraCount; ++camera) {
     for (const MessagePlace& place : recording->messages(firmware::image_topic(camera))) {
       times[camera].push_back(recording->clock_time(place.publish_time_ns));
     }
   }
-  DriveIndex index{name, *used_rig, std::move(*reference), framesets_of(times)};
+  DriveIndex index{name, *used_rig, std::move(*reference), drivers::framesets_of(times)};
   return std::unique_ptr<RecordedDrive>(new McapDrive(std::move(index), std::move(*recording)));
 }
 

@@ -1,29 +1,21 @@
 // A recorded drive with reference poses: the framesets from which training samples are made.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "common/cameras.h"
 #include "common/result.h"
 #include "common/time.h"
+#include "drivers/camera/replay/recorded_framesets.h"
 #include "pipeline/calibration/reference_trajectory.h"
 #include "pipeline/calibration/rig.h"
 #include "pipeline/preprocessing/image_remap.h"
 
 namespace bevloc::drives {
 
-/// Frames of several cameras within this time are one frameset.
-inline constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
-
-/// Where the frames of a frameset are in their drive.
-struct FramesetPlace {
-  Time time;                                 ///< when its earliest exposure started
-  CameraMask present{};                      ///< the cameras that have a frame: at least one
-  std::array<size_t, kCameraCount> frame{};  ///< its number among the camera's frames
-};
+using drivers::FramesetPlace;
+using drivers::kWidestSpread;
 
 /// What is known of a drive before an image is read.
 struct DriveIndex {
@@ -52,9 +44,5 @@ class RecordedDrive {
  private:
   const DriveIndex index_;
 };
-
-/// Groups the frames of all cameras into framesets. `times` has the times of each camera's frames,
-/// in order.
-std::vector<FramesetPlace> framesets_of(const std::array<std::vector<Time>, kCameraCount>& times);
 
 }  // namespace bevloc::drives

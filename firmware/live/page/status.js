@@ -74,10 +74,10 @@ function showPairs(status) {
   const received = perSecond(status, (of) => of.can.received);
   const pairs = [
     ["framesets skipped", status.framesets.skipped],
-    ["without a prior", status.framesets.without_prior],
-    ["spread", status.framesets.spread_ms.toFixed(2) + " ms"],
-    ["accepted", status.tracker.corrections.accepted],
-    ["refused by E2E", status.vehicle.e2e_refused],
+    ["framesets without a prior", status.framesets.without_prior],
+    ["spread of a frameset", status.framesets.spread_ms.toFixed(2) + " ms"],
+    ["corrections accepted", status.tracker.corrections.accepted],
+    ["frames refused by E2E", status.vehicle.e2e_refused],
     ["vehicle frames lost", status.vehicle.frames_lost],
     ["CAN sent", sent.toFixed(0) + " per s"],
     ["CAN received", received.toFixed(0) + " per s"],

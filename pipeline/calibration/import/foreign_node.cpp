@@ -9,6 +9,7 @@
 
 #include "common/number_text.h"
 #include "common/yaml_text.h"
+#include "pipeline/calibration/unit_quaternion.h"
 
 namespace bevloc::calibration_import {
 namespace {
@@ -125,13 +126,9 @@ void ForeignNode::reject(std::string_view found, std::string_view wanted) const 
 }
 
 Eigen::Matrix3d rotation_from_wxyz(const std::vector<double>& wxyz, std::string_view place) {
-  constexpr double kTolerance = 1e-3;
-  const Eigen::Quaterniond rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  if (!(std::abs(rotation.norm() - 1.0) <= kTolerance)) {
-    refuse(place, fmt::format("a quaternion of norm {:.6g}", rotation.norm()),
-           "a unit quaternion w, x, y, z");
-  }
-  return rotation.normalized().toRotationMatrix();
+  const auto rotation = rotation_from_quaternion(wxyz);
+  if (!rotation) refuse(place, rotation.error().message, "a unit quaternion w, x, y, z");
+  return *rotation;
 }
 
 Se3 rigid_from_rows(const std::vector<double>& rows, std::string_view place) {

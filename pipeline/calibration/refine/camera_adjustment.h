@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "common/se2.h"
 #include "pipeline/calibration/camera_model.h"
 
 namespace bevloc {
@@ -31,7 +32,7 @@ struct CameraParameterInfo {
   double per_unit;        ///< SI units (rad, m, 1, s) in one unit that people read
   double expected_error;  ///< one sigma before a recording, in SI units
 };
-inline constexpr double kPerDegree = 3.14159265358979323846 / 180.0;
+inline constexpr double kPerDegree = radians(1.0);
 inline constexpr std::array<CameraParameterInfo, kCameraParameters> kCameraParameterInfos{{
     {"pitch", "pitch_deg", kPerDegree, 1.0 * kPerDegree},
     {"yaw", "yaw_deg", kPerDegree, 1.0 * kPerDegree},

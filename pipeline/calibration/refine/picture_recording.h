@@ -1,4 +1,4 @@
-// A recording of a drive: pictures of the cameras, and reference poses.
+// The pictures of a drive and its reference poses, from a picture folder or a simulated drive.
 #pragma once
 
 #include <vector>

@@ -6,6 +6,9 @@ namespace bevloc {
 namespace {
 
 constexpr double kPaintReach_m = 25.0;
+/// A frameset is used if the vehicle has moved or turned this much since the one used before.
+constexpr double kApart_m = 1.5;
+constexpr double kApart_deg = 2.0;
 
 struct Round {
   double search_rad;  ///< largest distance between where paint and ties are expected and found
@@ -45,9 +48,9 @@ class RigRefiner {
       if (Status read = look(round); !read) return tl::unexpected(read.error());
       if (framesets_ < kLeastFramesets) {
         return fail(
-            "recording: found {} framesets that have a reference pose and are far enough apart, "
-            "wanted {} or more",
-            framesets_, kLeastFramesets);
+            "pictures: found {} framesets with a reference pose that are {:g} m or {:g} degrees "
+            "apart, wanted {} or more; drive longer, or check the times of the reference poses",
+            framesets_, kApart_m, kApart_deg, kLeastFramesets);
       }
       solve(round);
     }
@@ -116,7 +119,8 @@ class RigRefiner {
 
   static bool is_near(const Se2& a, const Se2& b) {
     const Se2 between = correction_between(a, b);
-    return between.translation().norm() < 1.5 && std::abs(between.yaw_rad) < 2.0 * kPerDegree;
+    return between.translation().norm() < kApart_m &&
+           std::abs(between.yaw_rad) < radians(kApart_deg);
   }
 
   void look_at(const std::vector<RecordedPicture>& pictures, const Se2& pose, const Round& round) {

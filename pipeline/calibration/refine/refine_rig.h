@@ -1,4 +1,4 @@
-// Compares a recording with the map, and estimates the rig from it.
+// Compares the pictures of a drive with the map, and estimates the rig from them.
 #pragma once
 
 #include <functional>

@@ -10,28 +10,27 @@
 #include <boost/geometry/index/rtree.hpp>
 
 #include "common/plane.h"
+#include "pipeline/map/boost_box.h"
 
 namespace bevloc {
 namespace {
 
 namespace geometry = boost::geometry;
 
-using CoverPoint = geometry::model::point<double, 2, geometry::cs::cartesian>;
-using CoverBox = geometry::model::box<CoverPoint>;
-using CoverEntry = std::pair<CoverBox, size_t>;
+using CoverEntry = std::pair<BoostBox, size_t>;
 
 constexpr double kPiece_m = 0.5;
 /// An edge is cut into at most this many pieces.
 constexpr int kMostPieces = 10'000;
 
-CoverBox box_of_ring(const Line3& ring) {
+BoostBox box_of_ring(const Line3& ring) {
   Eigen::Vector2d low = ring.front().head<2>();
   Eigen::Vector2d high = low;
   for (const Eigen::Vector3d& point : ring) {
     low = low.cwiseMin(point.head<2>());
     high = high.cwiseMax(point.head<2>());
   }
-  return {{low.x(), low.y()}, {high.x(), high.y()}};
+  return box_of(low, high);
 }
 
 bool is_in_area(const Eigen::Vector2d& point, const Area& area) {
@@ -134,7 +133,7 @@ AreaCover& AreaCover::operator=(AreaCover&&) noexcept = default;
 AreaCover::~AreaCover() = default;
 
 bool AreaCover::covers(const Eigen::Vector3d& point, std::optional<size_t> ignored_owner) const {
-  const CoverBox at({point.x(), point.y()}, {point.x(), point.y()});
+  const BoostBox at = box_of(point.head<2>(), point.head<2>());
   const auto is_here = geometry::index::satisfies([&](const CoverEntry& entry) {
     const Area& area = areas_[entry.second];
     return ignored_owner != area.owner && is_in_area(point.head<2>(), area) &&

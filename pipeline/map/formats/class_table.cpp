@@ -36,9 +36,7 @@ ClassTable::Rule read_rule(YamlMap& yaml) {
 }  // namespace
 
 Result<ClassTable> ClassTable::read_file(const std::filesystem::path& path) {
-  const Result<std::string> text = bevloc::read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  return parse(*text, path.string());
+  return parse_file(path, parse);
 }
 
 Result<ClassTable> ClassTable::parse(const std::string& text, const std::string& name) {
@@ -63,9 +61,17 @@ const ClassTable::Rule* ClassTable::rule_for(std::string_view kind) const {
 Status check_rules(const ClassTable& classes, const ImportReport& report, const std::string& file) {
   const std::vector<ImportRow> rows = report.rows();
   for (const ClassTable::Rule& rule : classes.rules()) {
-    const bool is_used = std::ranges::any_of(
-        rows, [&](const ImportRow& row) { return classes.rule_for(row.kind) == &rule; });
-    if (is_used) continue;
+    const auto fits_row = [&](const ImportRow& row) { return classes.rule_for(row.kind) == &rule; };
+    if (std::ranges::any_of(rows, fits_row)) {
+      const bool is_possible = !rule.becomes || std::ranges::any_of(rows, [&](const auto& row) {
+        return row.has_line && fits_row(row);
+      });
+      if (is_possible) continue;
+      return fail(
+          "{}: found a rule that makes lines of \"{}\", which has none in {}; give a rule for the "
+          "ways of a relation",
+          rule.place, rule.kind, file);
+    }
     const bool is_hidden = std::ranges::any_of(
         rows, [&](const ImportRow& row) { return rule_fits(rule.kind, row.kind); });
     if (is_hidden) {

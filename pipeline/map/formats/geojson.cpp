@@ -8,6 +8,7 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 
+#include "common/geodetic.h"
 #include "common/json_dump.h"
 #include "common/median.h"
 #include "pipeline/map/class_names.h"
@@ -96,7 +97,7 @@ class GeojsonReader {
       return for_each(member(geometry, "geometries"), path / "geometries",
                       &GeojsonReader::add_geometry, feature);
     }
-    builder_.drop(feature.kind, feature.where, "no line or polygon", 0.0);
+    builder_.drop_without_line(feature.kind, feature.where, "no line or polygon");
     return {};
   }
 
@@ -216,8 +217,8 @@ class GeojsonReader {
   /// Reads longitude and latitude in degrees. Returns nothing for any other value.
   static std::optional<GeoOrigin> position_at(const json& value) {
     const bool is_position = value.is_array() && value.size() >= 2 && value[0].is_number() &&
-                             value[1].is_number() && std::abs(value[0].get<double>()) <= 180.0 &&
-                             std::abs(value[1].get<double>()) <= 90.0;
+                             value[1].is_number() &&
+                             is_on_earth(value[1].get<double>(), value[0].get<double>());
     if (!is_position) return std::nullopt;
     return GeoOrigin{value[1].get<double>(), value[0].get<double>()};
   }

@@ -25,8 +25,8 @@ std::string text_of(const Meaning& meaning) {
              : fmt::format("{}, {}", name_of(meaning.element_class), look);
 }
 
-void ImportReport::note(std::string_view kind, const std::optional<Meaning>& meaning,
-                        std::string_view why, double length_m, std::string_view where) {
+ImportRow& ImportReport::count(std::string_view kind, const std::optional<Meaning>& meaning,
+                               std::string_view why, std::string_view where) {
   auto row = std::ranges::find_if(rows_, [&](const ImportRow& other) {
     return other.kind == kind && other.meaning == meaning && other.why == why;
   });
@@ -35,8 +35,18 @@ void ImportReport::note(std::string_view kind, const std::optional<Meaning>& mea
     row = rows_.end() - 1;
   }
   ++row->count;
-  row->length_m += length_m;
   if (row->examples.size() < kMostExamples) row->examples.emplace_back(where);
+  return *row;
+}
+
+void ImportReport::note(std::string_view kind, const std::optional<Meaning>& meaning,
+                        std::string_view why, double length_m, std::string_view where) {
+  count(kind, meaning, why, where).length_m += length_m;
+}
+
+void ImportReport::note_without_line(std::string_view kind, std::string_view why,
+                                     std::string_view where) {
+  count(kind, std::nullopt, why, where).has_line = false;
 }
 
 void ImportReport::remark_shift(const Eigen::Vector2d& shift) {

@@ -31,6 +31,7 @@ struct ImportRow {
   size_t count = 0;
   double length_m = 0.0;
   std::vector<std::string> examples;  ///< the first few: element and line
+  bool has_line = true;               ///< false for what no rule can make a line of
 };
 
 /// One thread.
@@ -39,6 +40,9 @@ class ImportReport {
   /// Counts one line of the file. `where` names it, such as "way 12 (line 340)".
   void note(std::string_view kind, const std::optional<Meaning>& meaning, std::string_view why,
             double length_m, std::string_view where);
+
+  /// Counts one element of the file that has no line of its own, such as a relation or a point.
+  void note_without_line(std::string_view kind, std::string_view why, std::string_view where);
 
   /// A remark on the whole file, such as where its origin comes from.
   void remark(std::string text) { remarks_.push_back(std::move(text)); }
@@ -54,6 +58,10 @@ class ImportReport {
   const std::vector<std::string>& remarks() const { return remarks_; }
 
  private:
+  /// Counts an element in its row, which is made if it is missing.
+  ImportRow& count(std::string_view kind, const std::optional<Meaning>& meaning,
+                   std::string_view why, std::string_view where);
+
   std::vector<ImportRow> rows_;
   std::vector<std::string> remarks_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include <GeographicLib/LocalCartesian.hpp>
@@ -10,21 +9,11 @@
 #include "common/plane.h"
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_check.h"
+#include "pipeline/map/map_points.h"
 #include "pipeline/map/tangent_plane.h"
 
 namespace bevloc {
 namespace {
-
-void move_points(HdMap& map, const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& moved) {
-  for (MapElement& element : map.elements) {
-    for (Eigen::Vector2d& point : element.points) point = moved(point);
-  }
-  for (Lane& lane : map.lanes) {
-    for (auto* line : {&lane.left, &lane.right, &lane.centerline}) {
-      for (Eigen::Vector2d& point : *line) point = moved(point);
-    }
-  }
-}
 
 constexpr std::string_view kByRule = "by the class table";
 

@@ -79,6 +79,11 @@ class MapBuilder {
   /// Reports a line that the map does not take for a reason that no class table changes.
   void drop(std::string_view kind, std::string_view where, std::string_view why, double length_m);
 
+  /// Reports what has no line of its own, such as a point.
+  void drop_without_line(std::string_view kind, std::string_view where, std::string_view why) {
+    report_.note_without_line(kind, why, where);
+  }
+
   /// Names a part that was lost because the file is wrong there. See HdMap::left_out.
   void leave_out(std::string sentence) { map_.left_out.push_back(std::move(sentence)); }
 

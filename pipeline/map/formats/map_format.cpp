@@ -58,7 +58,11 @@ Result<ImportedMap> read_compact(std::string_view bytes, const std::filesystem::
         file.string());
   }
   Result<HdMap> map = decode_map(bytes, file.string());
-  if (!map) return tl::unexpected(map.error());
+  if (!map) {
+    return fail(
+        "{}; the file is damaged or of another version: make it again with `bevloc_convert_map`",
+        map.error().message);
+  }
   return ImportedMap{std::move(*map), {}};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/crc32.h"
+#include "common/geodetic.h"
 #include "pipeline/map/compact_codec.h"
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/tiles/tile_header.h"
@@ -177,8 +178,7 @@ Result<TileDirectory> TileDirectory::open(std::string_view bytes, const std::str
   facts.lanes = header->lanes;
   std::ranges::copy(header->of_class, facts.of_class);
   facts.tiles = header->tiles;
-  if (!(std::abs(facts.origin.latitude_deg) <= 90.0 &&
-        std::abs(facts.origin.longitude_deg) <= 180.0)) {
+  if (!is_on_earth(facts.origin.latitude_deg, facts.origin.longitude_deg)) {
     return fail("{}: found an origin that is not on earth", file);
   }
   if (Status status = directory.check_entries(*header, file); !status) {

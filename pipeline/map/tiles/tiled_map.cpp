@@ -1,39 +1,14 @@
 #include "pipeline/map/tiles/tiled_map.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <tuple>
 #include <utility>
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-
 #include "common/crc32.h"
-#include "common/file_descriptor.h"
 #include "pipeline/map/tiles/tile_piece.h"
 
 namespace bevloc {
 namespace {
-
-/// Maps a whole file for reading.
-Result<std::string_view> map_file(const std::filesystem::path& path) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  struct stat status {};
-  if (file.get() < 0 || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode) ||
-      status.st_size == 0) {
-    return fail("{}: found no readable file ({}), wanted a compact map", path.string(),
-                std::strerror(errno));
-  }
-  const auto size = static_cast<size_t>(status.st_size);
-  void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
-  if (bytes == MAP_FAILED) {
-    return fail("{}: cannot map {} bytes into memory ({})", path.string(), size,
-                std::strerror(errno));
-  }
-  return std::string_view(static_cast<const char*>(bytes), size);
-}
 
 bool boxes_meet(const TiledMap::Segment& segment, const Eigen::Vector2d& low,
                 const Eigen::Vector2d& high) {
@@ -44,24 +19,17 @@ bool boxes_meet(const TiledMap::Segment& segment, const Eigen::Vector2d& low,
 }  // namespace
 
 Result<std::unique_ptr<TiledMap>> TiledMap::open(const std::filesystem::path& path) {
-  const Result<std::string_view> bytes = map_file(path);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const auto directory = TileDirectory::open(*bytes, path.string());
-  if (!directory) {
-    munmap(const_cast<char*>(bytes->data()), bytes->size());
-    return tl::unexpected(directory.error());
-  }
-  return std::unique_ptr<TiledMap>(new TiledMap(*bytes, *directory));
+  auto file = MappedFile::open(path, "a compact map");
+  if (!file) return tl::unexpected(file.error());
+  const auto directory = TileDirectory::open(file->bytes(), path.string());
+  if (!directory) return tl::unexpected(directory.error());
+  return std::unique_ptr<TiledMap>(new TiledMap(std::move(*file), *directory));
 }
 
-TiledMap::TiledMap(std::string_view bytes, const TileDirectory& directory)
-    : bytes_(bytes),
+TiledMap::TiledMap(MappedFile file, const TileDirectory& directory)
+    : file_(std::move(file)),
       directory_(directory),
       states_(std::make_unique<std::atomic<TileState>[]>(directory.size())) {}
-
-TiledMap::~TiledMap() {
-  munmap(const_cast<char*>(bytes_.data()), bytes_.size());
-}
 
 bool TiledMap::is_good(size_t index, const TileDirectory::Entry& entry) const {
   const TileState known = states_[index].load(std::memory_order_relaxed);

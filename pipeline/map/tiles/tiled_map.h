@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "common/mapped_file.h"
 #include "common/result.h"
 #include "pipeline/map/tiles/tile_codec.h"
 
@@ -29,7 +30,6 @@ class TiledMap {
 
   /// Fails, with file and byte, as TileDirectory::open() does, and on files that cannot be mapped.
   static Result<std::unique_ptr<TiledMap>> open(const std::filesystem::path& path);
-  ~TiledMap();
   TiledMap(const TiledMap&) = delete;
   TiledMap& operator=(const TiledMap&) = delete;
 
@@ -49,13 +49,13 @@ class TiledMap {
  private:
   enum class TileState : uint8_t { kUnknown, kGood, kDamaged };
 
-  TiledMap(std::string_view bytes, const TileDirectory& directory);
+  TiledMap(MappedFile file, const TileDirectory& directory);
   bool is_good(size_t index, const TileDirectory::Entry& entry) const;
   void add_tile(size_t index, const Eigen::Vector2d& min_corner, const Eigen::Vector2d& max_corner,
                 std::vector<Segment>& found) const;
 
-  std::string_view bytes_;  ///< the mapped file
-  TileDirectory directory_;
+  MappedFile file_;
+  TileDirectory directory_;  ///< borrows from file_
   std::unique_ptr<std::atomic<TileState>[]> states_;
   mutable std::atomic<size_t> damaged_tiles_{0};
 };

@@ -48,16 +48,12 @@ BranchCost cost_of_branch(const Program& program, const std::string& output,
 }  // namespace nn
 
 Result<NetworkCost> network_cost(const std::string& path) {
-  try {
+  return nn::loaded(path, [&]() -> Result<NetworkCost> {
     const nn::Program program = nn::lower(nn::read_onnx(path));
     return NetworkCost{nn::cost_of_branch(program, "bev_features"),
                        nn::cost_of_branch(program, "map_features"),
                        nn::cost_of_branch(program, "bev_mask", "bev_features")};
-  } catch (const nn::LoadError& error) {
-    return fail("{}: {}", path, error.what());
-  } catch (const std::exception& error) {
-    return fail("{}: cannot be loaded: {}", path, error.what());
-  }
+  });
 }
 
 }  // namespace bevloc

@@ -30,10 +30,7 @@ void summarise_joint(std::span<const float> probability, const HypothesisGrid& h
     result.y_probability[j] += p;
     result.yaw_probability[k] += p;
   });
-  const Eigen::Vector3d mean(posterior_mean(result.x_probability, hypotheses.x_m),
-                             posterior_mean(result.y_probability, hypotheses.y_m),
-                             posterior_mean(result.yaw_probability, hypotheses.yaw_rad));
-  result.correction = {mean.x(), mean.y(), mean.z()};
+  result.correction = mean_correction(result, hypotheses);
 }
 
 }  // namespace bevloc

@@ -1,7 +1,6 @@
 // `bevloc bench`: its output and the arguments it refuses. The tests do not check times.
 #include "evaluation/bench/bench_command.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include <sys/wait.h>
 
 #include "tests/evaluation/own_config.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::bench {
@@ -23,14 +23,8 @@ using testing::HasSubstr;
 constexpr const char* kConfig = BEVLOC_SOURCE_DIR "/config/demo.yaml";
 
 Status run(std::vector<std::string> arguments, const std::string& config = kConfig) {
-  CLI::App app;
-  BenchCommand command;
-  command.declare(app);
   arguments.insert(arguments.begin(), {"bench", "--config", config});
-  std::ranges::reverse(arguments);  // as CLI11 expects
-  app.parse(arguments);
-  EXPECT_TRUE(app.got_subcommand("bench"));
-  return command.run();
+  return test::run_command<BenchCommand>(arguments);
 }
 
 class BenchCommandTest : public testing::Test {

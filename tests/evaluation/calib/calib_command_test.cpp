@@ -1,13 +1,12 @@
 // The command line of `bevloc calib`.
 #include "evaluation/calib/calib_command.h"
 
-#include <algorithm>
-
 #include <gmock/gmock.h>
 
 #include "pipeline/calibration/rig_yaml.h"
 #include "sim/sim_rig.h"
 #include "tests/evaluation/calib/picture_folder.h"
+#include "tests/evaluation/refusal.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text.h"
 
@@ -18,14 +17,8 @@ using testing::HasSubstr;
 
 /// The message with which the command fails.
 std::string error_of(std::vector<std::string> arguments) {
-  CLI::App app;
-  CalibCommand command;
-  command.declare(app);
   arguments.insert(arguments.begin(), "calib");
-  std::ranges::reverse(arguments);  // as CLI11 expects
-  app.parse(arguments);
-  const auto verdict = command.run();
-  return verdict ? "no error" : verdict.error().message;
+  return test::refusal_of<CalibCommand>(arguments);
 }
 
 TEST(CalibCommand, AFileMayFollowAnOptionWithAList) {
@@ -39,6 +32,36 @@ TEST(CalibCommand, AFileMayFollowAnOptionWithAList) {
   EXPECT_THAT(error_of({"refine", "--rig", gone, "--map", gone, "--keep", "focal", "--keep", "time",
                         "pictures"}),
               HasSubstr("gone.yaml"));
+}
+
+TEST(CalibCommand, AnImportWritesOverNoFileThatItReads) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_file(folder / "chain.yaml", "cam0: {}\n"));
+  ASSERT_TRUE(write_file(folder / "extrinsics.yaml", "front: {}\n"));
+  for (const char* input : {"chain.yaml", "extrinsics.yaml"}) {
+    EXPECT_THAT(error_of({"import", folder / "chain.yaml", "--extrinsics",
+                          folder / "extrinsics.yaml", "--out", folder / input}),
+                HasSubstr(std::string(input) + ": found a file to write that is also read"));
+  }
+  EXPECT_EQ(test::read_text(folder / "chain.yaml"), "cam0: {}\n");
+}
+
+TEST(CalibCommand, ARefinedRigReplacesOnlyARig) {
+  const test::TemporaryFolder folder;
+  test::write_picture_folder(folder.path(), 10);
+  ASSERT_TRUE(write_file(folder / "rig.yaml", format_rig(sim::nominal_rig())));
+  ASSERT_TRUE(
+      write_file(folder / "town.osm",
+                 test::read_text(BEVLOC_SOURCE_DIR "/tests/pipeline/map/fixtures/street.osm")));
+  const auto error_with = [&](const std::string& out, const std::string& json) {
+    return error_of({"refine", folder.path(), "--rig", folder / "rig.yaml", "--map",
+                     folder / "town.osm", "--out", folder / out, "--json", folder / json});
+  };
+  for (const std::string input : {"town.osm", "front/frames.txt"}) {
+    EXPECT_THAT(error_with(input, "new.json"),
+                HasSubstr(input + ": found a file to write that is also read"));
+  }
+  EXPECT_THAT(error_with("new", "new"), HasSubstr("new: found one name for two files to write"));
 }
 
 TEST(CalibCommand, WritesOverNoFileThatItReads) {

@@ -1,7 +1,10 @@
 #include "evaluation/calib/folder_recording.h"
 
+#include <fstream>
+
 #include <gtest/gtest.h>
 
+#include "common/image_file.h"
 #include "sim/sim_rig.h"
 #include "tests/evaluation/calib/picture_folder.h"
 #include "tests/support/temporary_folder.h"
@@ -36,6 +39,27 @@ TEST(FolderRecording, KnowsWhichCamerasHavePictures) {
 
 TEST(FolderRecording, SkipsFramesetsWithinTheInterval) {
   EXPECT_EQ(framesets_at(30, std::chrono::milliseconds(450)), 3);
+}
+
+/// Sums over the pictures are rounded in this order.
+TEST(FolderRecording, GivesThePicturesOfAFramesetInTheOrderOfTime) {
+  const test::TemporaryFolder folder;
+  test::write_picture_folder(folder.path(), 1);
+  std::ofstream(folder.path() / "front" / "frames.txt") << "0 9000000 picture.png\n";
+  const Rig rig = sim::nominal_rig();
+  for (const int camera : {1, 4}) {
+    const Intrinsics& lens = rig.cameras[camera].intrinsics;
+    const RgbImage image(lens.width_px, lens.height_px);
+    const auto file = folder.path() / kCameraNames[camera] / "picture.png";
+    ASSERT_TRUE(write_png(image.view(), file.string()));
+  }
+  const auto recording = FolderRecording::open(folder.path(), rig, Duration::zero());
+  ASSERT_TRUE(recording) << recording.error().message;
+  std::vector<RecordedPicture> pictures;
+  ASSERT_TRUE((*recording)->next(pictures));
+  ASSERT_EQ(pictures.size(), 2U);
+  EXPECT_EQ(kCameraNames[pictures[0].camera], "back");
+  EXPECT_EQ(kCameraNames[pictures[1].camera], "front");
 }
 
 }  // namespace

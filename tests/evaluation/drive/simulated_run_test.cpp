@@ -104,6 +104,40 @@ TEST_F(SimulatedRunTest, AFullDiskIsNamed) {
       << report.error().message;
 }
 
+TEST_F(SimulatedRunTest, AStoppedDriveIsNotTakenForAWholeOne) {
+  config_.simulation->duration_s = 1.0;
+  const auto whole = run();
+  ASSERT_TRUE(whole) << whole.error().message;
+  EXPECT_EQ(whole->driven_s, 1.0);
+  EXPECT_EQ(to_table(*whole).find("stopped"), std::string::npos);
+  int steps = 0;
+  const auto part = run_simulation(
+      config_, rig_, options_, [&steps](const firmware::ApplianceView&) { return ++steps == 10; });
+  ASSERT_TRUE(part) << part.error().message;
+  EXPECT_GT(part->driven_s, 0.0);
+  EXPECT_LT(part->driven_s, 0.9);
+  EXPECT_NE(to_table(*part).find("s of 1.0 s"), std::string::npos);
+}
+
+/// Otherwise a reader would take the pictures of the earlier drive for those of the later one.
+TEST_F(SimulatedRunTest, ThePictureFolderHoldsOneDrive) {
+  options_.pictures_folder = folder_ / "pictures";
+  const auto exists = [this](const char* name) {
+    return std::filesystem::exists(options_.pictures_folder / name);
+  };
+  config_.simulation->duration_s = 2.0;
+  ASSERT_TRUE(run());
+  EXPECT_TRUE(exists("front/frames.txt"));
+  EXPECT_TRUE(exists("map.bvm"));
+  sim::Fault dead = make_fault(FaultKind::kCameraDead, -1.0);
+  dead.camera = 1;
+  config_.simulation->faults = {dead};
+  const auto again = run();
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_FALSE(exists("front/frames.txt"));
+  EXPECT_TRUE(exists("back/frames.txt"));
+}
+
 TEST_F(SimulatedRunTest, AThreadCannotHangInLockstep) {
   config_.simulation->faults = {make_fault(FaultKind::kHangVision, 1.0)};
   const auto report = run();

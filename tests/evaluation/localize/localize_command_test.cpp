@@ -14,7 +14,9 @@
 #include "sim/sim_rig.h"
 #include "sim/vehicle/placement.h"
 #include "sim/world/world_generator.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/turned_rig.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -50,15 +52,10 @@ class LocalizeCommandTest : public testing::Test {
   }
 
   static Status run(std::vector<std::string> arguments) {
-    CLI::App app;
-    LocalizeCommand command;
-    command.declare(app);
     arguments.insert(arguments.begin(), {"localize", "--rig", file("rig.yaml"), "--map",
                                          file("town.bvm"), "--images", folder_->path(), "--frame",
                                          "map", "--model", BEVLOC_SOURCE_DIR "/models/nano.onnx"});
-    std::ranges::reverse(arguments);  // as CLI11 expects
-    app.parse(arguments);
-    return command.run();
+    return test::run_command<LocalizeCommand>(arguments);
   }
 
   static nlohmann::json answer() {
@@ -125,6 +122,16 @@ TEST_F(LocalizeCommandTest, SaysWhichCameraIsNotUsed) {
   EXPECT_THAT(said, HasSubstr("back: this camera is not used, because its picture is dark"));
   EXPECT_EQ(answer()["cameras_left_out"],
             nlohmann::json::parse(R"({"back": "its picture is dark"})"));
+}
+
+TEST_F(LocalizeCommandTest, RefusesCamerasThatShowNoRoad) {
+  const Rig rig = test::turned_down(sim::nominal_rig(), 40.0);
+  ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(rig)));
+  const Status refused = run({"--prior", text_of(pose_)});
+  ASSERT_TRUE(write_file(file("rig.yaml"), format_rig(sim::nominal_rig())));
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              testing::StartsWith(file("rig.yaml") + ": found cameras that show only a part"));
 }
 
 TEST_F(LocalizeCommandTest, WritesOverNoFileThatItReads) {

@@ -11,6 +11,7 @@
 #include "evaluation/maps/map_facts.h"
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
@@ -35,13 +36,8 @@ HdMap road() {
   return map;
 }
 
-Status run(std::vector<std::string> words) {
-  CLI::App app("test");
-  MapCommand command;
-  command.declare(app);
-  std::ranges::reverse(words);  // as CLI11 wants them
-  app.parse(words);
-  return command.run();
+Status run(const std::vector<std::string>& words) {
+  return test::run_command<MapCommand>(words);
 }
 
 TEST(MapFacts, CountsByClass) {
@@ -101,6 +97,19 @@ TEST(MapDiff, FindsWhatOnlyOneMapHasInAnotherFrame) {
   EXPECT_LT(same.classes[2].only_first_m, 2.1) << "the boundary has not moved";
 }
 
+TEST(MapDiff, RefusesMapsThatLieTooFarApart) {
+  const HdMap first = road();
+  HdMap second = road();
+  second.origin.latitude_deg += 0.7;  // 78 km
+  EXPECT_TRUE(check_near(first, second));
+  second.origin.latitude_deg = first.origin.latitude_deg + 2.0;
+  const Status far = check_near(first, second);
+  ASSERT_FALSE(far);
+  EXPECT_THAT(far.error().message, HasSubstr("origins are 222 km apart, wanted at most 83 km"));
+  second.origin = {};
+  EXPECT_TRUE(check_near(first, second)) << "its place is unknown";
+}
+
 class MapCommandTest : public testing::Test {
  protected:
   std::string at(const char* name) const { return (folder_ / name).string(); }
@@ -140,6 +149,12 @@ TEST_F(MapCommandTest, WritesOverNoFileThatItReads) {
     EXPECT_THAT(status.error().message, HasSubstr("found a file to write that is also read"));
   }
   EXPECT_EQ(*read_file(at("street.osm")), *read_file(kStreet));
+  EXPECT_FALSE(std::filesystem::exists(at("a.bvm")));
+}
+
+TEST_F(MapCommandTest, WritesOneFileForEachName) {
+  EXPECT_THAT(run({"map", "import", kStreet, at("a.bvm"), "--report", at("a.bvm")}).error().message,
+              HasSubstr("a.bvm: found one name for two files to write"));
   EXPECT_FALSE(std::filesystem::exists(at("a.bvm")));
 }
 

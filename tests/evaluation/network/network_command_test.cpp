@@ -17,6 +17,7 @@
 
 #include "evaluation/network/network_evaluation.h"
 #include "evaluation/solver/read_out_case.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text.h"
 
@@ -34,14 +35,8 @@ constexpr const char* kModel = BEVLOC_SOURCE_DIR "/models/nano.onnx";
 constexpr const char* kMap = BEVLOC_SOURCE_DIR "/tests/pipeline/map/fixtures/street.osm";
 
 Status run(std::vector<std::string> arguments, const std::string& model = kModel) {
-  CLI::App app;
-  NetworkCommand command;
-  command.declare(app);
   arguments.insert(arguments.begin(), {"network", "--model", model});
-  std::ranges::reverse(arguments);  // as CLI11 expects
-  app.parse(arguments);
-  EXPECT_TRUE(app.got_subcommand("network"));
-  return command.run();
+  return test::run_command<NetworkCommand>(arguments);
 }
 
 class NetworkCommandTest : public testing::Test {

@@ -12,7 +12,9 @@
 #include "pipeline/calibration/rig_yaml.h"
 #include "sim/samples/random_rig.h"
 #include "sim/sim_rig.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/turned_rig.h"
 
 namespace bevloc::evaluation {
 namespace {
@@ -22,16 +24,11 @@ class RigCommandTest : public testing::Test {
   std::string file(const std::string& name) const { return folder_ / name; }
 
   Status run(std::vector<std::string> rig) const {
-    CLI::App app;
-    RigCommand command;
-    command.declare(app);
     std::vector<std::string> arguments{
         "rig",    "--model",          BEVLOC_SOURCE_DIR "/models/nano.onnx", "--frames", "8",
         "--json", file("answer.json")};
     std::ranges::move(rig, std::back_inserter(arguments));
-    std::ranges::reverse(arguments);  // as CLI11 expects
-    app.parse(arguments);
-    return command.run();
+    return test::run_command<RigCommand>(arguments);
   }
 
   nlohmann::json answer() const {
@@ -60,6 +57,24 @@ TEST_F(RigCommandTest, AnotherRigAndItsOwnBodyChangeTheErrors) {
   ASSERT_TRUE(status) << status.error().message;
   // A rig that sees only its own vehicle keeps the error of the prior.
   EXPECT_GT(answer()["given"]["mae"][1], 3.0 * answer()["own"]["mae"][1].get<double>());
+}
+
+TEST_F(RigCommandTest, TellsWhatBevlocdSaysAboutTheRig) {
+  const auto said = [this](double down_deg) {
+    EXPECT_TRUE(
+        write_file(file("rig.yaml"), format_rig(test::turned_down(sim::nominal_rig(), down_deg))));
+    testing::internal::CaptureStderr();
+    const Status status = run({file("rig.yaml")});
+    EXPECT_TRUE(status) << status.error().message;
+    return testing::internal::GetCapturedStderr();
+  };
+  const std::string found = file("rig.yaml") + ": found cameras that show only a part";
+  EXPECT_THAT(said(40.0), testing::HasSubstr("bevlocd refuses " + found));
+  // Almost all cameras see only the ground that the network does not look at.
+  for (int axis = 0; axis < 2; ++axis) {
+    EXPECT_GT(answer()["given"]["mae"][axis], 1.5 * answer()["own"]["mae"][axis].get<double>());
+  }
+  EXPECT_THAT(said(30.0), testing::StartsWith(found));
 }
 
 TEST_F(RigCommandTest, WritesTheRigThatItDraws) {

@@ -9,6 +9,7 @@
 #include "evaluation/report/report_command.h"
 #include "tests/evaluation/recording/hand_made_recording.h"
 #include "tests/evaluation/refusal.h"
+#include "tests/support/command_line.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc::evaluation {
@@ -49,13 +50,10 @@ TEST(Report, ADamagedPictureIsLeftOutAndNamed) {
   made.add(firmware::image_topic(1), picture("no JPEG"), 0.1);
   made.add(firmware::kMatchTopic, match(0.5), 0.2);
   const std::string page = folder / "report.html";
-  CLI::App app;
-  ReportCommand command;
-  command.declare(app);
-  app.parse("report " + made.finish().string() + " --out " + page);
+  const std::string recording = made.finish();
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  const Status made_page = command.run();
+  const Status made_page = test::run_command<ReportCommand>({"report", recording, "--out", page});
   testing::internal::GetCapturedStdout();
   const std::string errors = testing::internal::GetCapturedStderr();
   ASSERT_TRUE(made_page) << made_page.error().message;
@@ -88,6 +86,12 @@ TEST(Report, NeverWritesOverTheRecording) {
   EXPECT_THAT(test::refusal_of<ReportCommand>({"report", first, "--out", page.string()}),
               HasSubstr("found a file to write that is also read"));
   EXPECT_EQ(read_file(first).value(), bytes);
+}
+
+TEST(Report, AFileMayFollowTheTimes) {
+  EXPECT_THAT(test::refusal_of<ReportCommand>(
+                  {"report", "--at", "14:32", "--at", "12.5", "/nonexistent/gone.mcap"}),
+              HasSubstr("gone.mcap"));
 }
 
 TEST(TrackMap, JoinsNothingAcrossAGap) {

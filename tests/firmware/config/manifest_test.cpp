@@ -51,6 +51,12 @@ TEST(Manifest, RefusesOtherLines) {
   }
 }
 
+TEST(Manifest, ShowsOnlyTheBeginningOfALongLine) {
+  const std::string beginning(80, 'x');
+  const std::string error = error_in(beginning + std::string(100'000, 'y'));
+  EXPECT_THAT(error, HasSubstr("found \"" + beginning + "\", wanted"));
+}
+
 class ManifestFiles : public ::testing::Test {
  protected:
   void SetUp() override {

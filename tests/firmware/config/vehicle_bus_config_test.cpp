@@ -66,6 +66,19 @@ TEST_F(VehicleBusConfigTest, LongMessagesNeedAnFdInterface) {
   EXPECT_TRUE(appliance_options(config->can).fd);
 }
 
+/// Consumers take both variants, so a second localizer of the other variant must be noticed.
+TEST(ApplianceOptionsTest, TheFilterPassesTheIdentifiersOfBothVariants) {
+  CanConfig config;
+  for (const can::FrameFormat variant : {can::FrameFormat::kClassic, can::FrameFormat::kFd}) {
+    config.variant = variant;
+    const auto options = appliance_options(config);
+    for (const uint32_t id : {0x500U, 0x504U, 0x509U, 0x50BU, 0x50EU}) {
+      EXPECT_EQ(std::ranges::count(options.reserved_ids, id), 1) << id;
+      EXPECT_EQ(std::ranges::count(options.accepted_ids, id), 0) << "no input: " << id;
+    }
+  }
+}
+
 /// As in a DBC file whose speeds have an offset, but are magnitudes.
 TEST_F(VehicleBusConfigTest, SpeedsWhoseRangeBeginsAtZeroHaveNoSign) {
   std::string dbc = read_text(folder_ / "vehicle_demo.dbc");

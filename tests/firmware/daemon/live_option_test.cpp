@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/daemon/program.h"
+#include "tests/support/command_line.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -13,8 +14,7 @@ std::optional<LiveConfig> live_after(std::vector<std::string> words) {
   ProgramOptions options;
   declare_options(app, options);
   words.insert(words.begin(), {"--config", "demo.yaml"});
-  std::reverse(words.begin(), words.end());
-  app.parse(words);
+  test::parse(app, std::move(words));
   Config config;
   EXPECT_TRUE(override_config(options, config));
   return config.live;

@@ -6,8 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/files.h"
+#include "pipeline/calibration/rig_yaml.h"
 #include "tests/firmware/log_capture.h"
+#include "tests/support/demo_rig.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/turned_rig.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -53,6 +57,29 @@ TEST(ProgramRigTest, IsThatOfTheFileAsItWasRead) {
   std::filesystem::remove(config.rig_file);
   const auto rig = rig_of(config);
   EXPECT_TRUE(rig) << rig.error().message;
+}
+
+TEST(ProgramRigTest, MustShowTheRoad) {
+  const test::TemporaryFolder folder;
+  Config config;
+  config.rig_file = folder / "rig.yaml";
+  const auto rig_with = [&](double down_deg) {
+    EXPECT_TRUE(
+        write_file(config.rig_file, format_rig(test::turned_down(test::demo_rig(), down_deg))));
+    return rig_of(config);
+  };
+  const LogCapture log;
+  EXPECT_TRUE(rig_with(0.0));
+  EXPECT_EQ(log.text(), "");
+  EXPECT_TRUE(rig_with(30.0));
+  EXPECT_THAT(log.text(),
+              testing::StartsWith("warning: calibration.rig: " + config.rig_file.string() +
+                                  ": found cameras that show only a part"));
+  const auto refused = rig_with(40.0);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              testing::StartsWith("calibration.rig: " + config.rig_file.string() +
+                                  ": found cameras that show only a part"));
 }
 
 }  // namespace

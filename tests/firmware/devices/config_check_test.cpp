@@ -7,8 +7,12 @@
 #include <gmock/gmock.h>
 
 #include "firmware/devices/camera_factory.h"
+#include "pipeline/calibration/rig_yaml.h"
 #include "pipeline/network/test_frame.h"
 #include "tests/firmware/config/config_fixture.h"
+#include "tests/firmware/log_capture.h"
+#include "tests/support/demo_rig.h"
+#include "tests/support/turned_rig.h"
 
 namespace bevloc::firmware {
 namespace {
@@ -55,6 +59,27 @@ TEST_F(ConfigCheckTest, ReportsABadRotationWithItsLine) {
               StartsWith("calibration.rig: " + (folder_ / "rig.yaml").string() + ":" +
                          std::to_string(line) + ": "));
   EXPECT_THAT(checked.error().message, HasSubstr("rotation_wxyz"));
+}
+
+TEST_F(ConfigCheckTest, JudgesWhatTheCamerasShow) {
+  const auto config = load(kSmallest);
+  ASSERT_TRUE(config) << config.error().message;
+  std::filesystem::create_directory(folder_ / "sub");
+  put_model("sub/model.onnx");
+  const std::string found = "calibration.rig: " + (folder_ / "rig.yaml").string() +
+                            ": found cameras that show only a part of the network image";
+  const auto put_rig = [this](double down_deg) {
+    write("rig.yaml", format_rig(test::turned_down(test::demo_rig(), down_deg)));
+  };
+  put_rig(40.0);
+  const Status refused = check_config(*config);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, StartsWith(found));
+  put_rig(30.0);
+  const LogCapture log;
+  const Status checked = check_config(*config);
+  EXPECT_TRUE(checked) << checked.error().message;
+  EXPECT_THAT(log.text(), HasSubstr("warning: " + found));
 }
 
 TEST_F(ConfigCheckTest, ReadsTheRecordings) {
@@ -106,7 +131,7 @@ TEST_F(GoodFilesTest, TheNumberOfStartsIsRead) {
   write("starts", "forty-one\n");
   EXPECT_THAT(check_config(*config).error().message,
               StartsWith("can.secoc.starts_file: " + (folder_ / "starts").string() +
-                         ": found 'forty-one', wanted one whole number of starts"));
+                         ": found 9 bytes that are no number of starts, wanted one whole number"));
 }
 
 TEST_F(GoodFilesTest, TheFoldersOfWrittenFilesAreLookedFor) {
@@ -114,14 +139,36 @@ TEST_F(GoodFilesTest, TheFoldersOfWrittenFilesAreLookedFor) {
   ASSERT_TRUE(config) << config.error().message;
   const std::filesystem::path in_a_file = folder_ / "town.osm" / "file";
   config->can.secoc = SecocConfig{folder_ / "secoc.key", in_a_file};
-  EXPECT_THAT(check_config(*config).error().message,
-              StartsWith("can.secoc.starts_file: " + in_a_file.string() + ": cannot be written"));
-  config->can.secoc->starts_file = folder_ / "new" / "starts";
+  const auto expect_no_folder = [&](const std::string& key, const std::filesystem::path& file) {
+    const Status checked = check_config(*config);
+    ASSERT_FALSE(checked) << file;
+    EXPECT_THAT(checked.error().message,
+                StartsWith(key + ": " + file.string() + ": found no folder " +
+                           file.parent_path().string()));
+  };
+  expect_no_folder("can.secoc.starts_file", in_a_file);
+  const std::filesystem::path in_no_folder = folder_ / "new" / "file";
+  config->can.secoc->starts_file = in_no_folder;
+  expect_no_folder("can.secoc.starts_file", in_no_folder);
+  config->can.secoc->starts_file = folder_ / "starts";
   EXPECT_TRUE(check_config(*config));
-  config->learned_calibration_file = in_a_file;
-  EXPECT_THAT(check_config(*config).error().message,
-              StartsWith("calibration.online.file: " + in_a_file.string() + ": cannot be written"));
+  for (const std::filesystem::path& file : {in_a_file, in_no_folder}) {
+    config->learned_calibration_file = file;
+    expect_no_folder("calibration.online.file", file);
+  }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << "a check writes nothing";
+  config->learned_calibration_file = folder_ / "sub";
+  EXPECT_THAT(check_config(*config).error().message,
+              StartsWith("calibration.online.file: " + (folder_ / "sub").string() +
+                         ": found a folder or a device, wanted a file to replace, or none"));
+}
+
+TEST_F(GoodFilesTest, SystemdCreatesTheFolderOfTheDaemon) {
+  if (std::filesystem::exists("/var/lib/bevloc")) GTEST_SKIP() << "bevloc is installed here";
+  auto config = load_good();
+  ASSERT_TRUE(config) << config.error().message;
+  config->learned_calibration_file = "/var/lib/bevloc/calibration.yaml";
+  EXPECT_TRUE(check_config(*config));
 }
 
 /// Files whose model is the shipped one with some changed bytes. The daemon would refuse it, or end

@@ -1,7 +1,6 @@
 // Tests what the daemon's HTTP server answers without an appliance.
 #include "firmware/live/live_server.h"
 
-#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <map>
@@ -12,13 +11,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "command/status/status_command.h"
 #include "firmware/live/http_server.h"
 #include "firmware/live/httplib_header.h"
-#include "firmware/live/status_command.h"
+#include "tests/support/command_line.h"
 
 namespace bevloc::firmware {
 namespace {
 
+using command::StatusCommand;
 using testing::HasSubstr;
 
 class LiveServerTest : public testing::Test {
@@ -44,8 +45,6 @@ class LiveServerTest : public testing::Test {
   void publish(HealthState state, WhyMask why = {}, bool valid = false) const {
     Telemetry telemetry;
     telemetry.phase = Phase::kRunning;
-    telemetry.view.state = state;
-    telemetry.view.why = why;
     telemetry.snapshot.estimation.state = state;
     telemetry.snapshot.estimation.why = why;
     telemetry.snapshot.estimation.pose.known = true;
@@ -58,15 +57,9 @@ class LiveServerTest : public testing::Test {
     return status_at(server_->port(), arguments);
   }
   static int status_at(int port, const std::vector<std::string>& arguments) {
-    CLI::App app;
-    StatusCommand command;
-    command.declare(app);
     std::vector<std::string> words{"status", "--port", std::to_string(port)};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    std::reverse(words.begin(), words.end());
-    app.parse(words);
-    EXPECT_TRUE(app.got_subcommand("status"));
-    return command.run();
+    return test::run_command<StatusCommand>(words);
   }
 
   std::unique_ptr<LiveServer> server_;

@@ -78,10 +78,10 @@ TEST_F(ErrorLogTest, LogsEachCauseOfItsOwn) {
         "camera back_left: frame dropped because newer ones filled its queue",
         "CAN in: found a repeated counter", "tracker: odometry refused: beyond",
         "tracker: GNSS refused: not a number", "CAN in: frames lost",
-        "CAN in: found odometry less often", "CAN in: found wheel speeds that contradict",
-        "CAN in: found a change of odometry", "samples of odometry or GNSS dropped",
-        "reports of vision dropped", "CAN in: the controller lost frames",
-        "CAN out: frames dropped because they were too old",
+        "CAN in: found odometry that comes too seldom",
+        "CAN in: found wheel speeds that contradict", "CAN in: found a change of odometry",
+        "samples of odometry or GNSS dropped", "reports of vision dropped",
+        "CAN in: the controller lost frames", "CAN out: frames dropped because they were too old",
         "CAN out: frames replaced by newer ones"}) {
     EXPECT_THAT(log_.text(), HasSubstr(text));
   }
@@ -102,6 +102,7 @@ TEST_F(ErrorLogTest, TellsWhyGpsdCannotBeReachedAndNamesTheDropIns) {
   snapshot_.gnss->fixes[static_cast<size_t>(drivers::FixVerdict::kUnsynchronized)] = 1;
   note();
   EXPECT_EQ(lines(), 3);
+  EXPECT_THAT(log_.text(), HasSubstr("not synchronized, or whose error may exceed 100 ms"));
   EXPECT_THAT(log_.text(), HasSubstr("the drop-in clock.conf is installed"));
 }
 

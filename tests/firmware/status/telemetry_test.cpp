@@ -11,6 +11,7 @@
 
 #include "firmware/status/metrics.h"
 #include "firmware/status/status_json.h"
+#include "tests/firmware/status/running_telemetry.h"
 #include "tests/support/text.h"
 
 namespace bevloc::firmware {
@@ -20,21 +21,6 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::HasSubstr;
 using testing::Not;
-
-Telemetry running(HealthState state, WhyMask why = {}) {
-  Telemetry telemetry;
-  telemetry.phase = Phase::kRunning;
-  telemetry.view.state = state;
-  telemetry.view.why = why;
-  EstimationSnapshot& estimation = telemetry.snapshot.estimation;
-  estimation.state = state;
-  estimation.why = why;
-  estimation.pose.known = true;
-  estimation.pose.valid = state == HealthState::kTracking || state == HealthState::kDegraded;
-  estimation.pose.sigma = {0.25, 0.5, radians(1.0)};
-  estimation.pose.protection_level = {1.25, 1.5, radians(2.0)};
-  return telemetry;
-}
 
 std::string metrics(const Telemetry& telemetry) {
   return metrics_text(telemetry, {1e6, 2.5}, {});
@@ -111,11 +97,7 @@ TEST(PoseIsValid, NotWhileNobodyUpdatesIt) {
   const Duration silent = seconds(3);
   EXPECT_FALSE(pose_is_valid(telemetry, silent));
   EXPECT_THAT(metrics_text(telemetry, {}, silent), HasSubstr("bevloc_pose_valid 0\n"));
-  const nlohmann::json status = status_json(telemetry, {}, silent);
-  EXPECT_EQ(status["valid"], false);
-  EXPECT_THAT(status_page(status),
-              HasSubstr("TRACKING, pose NOT valid, NOT healthy\n  the supervisor has said nothing "
-                        "for 3 s. Restart the service.\n"));
+  EXPECT_EQ(status_json(telemetry, {}, silent)["valid"], false);
   telemetry.time = Time(seconds(103));  // CAN out hangs
   EXPECT_FALSE(pose_is_valid(telemetry, milliseconds(0)));
 }
@@ -129,6 +111,12 @@ TEST(HealthCheck, EveryReasonHasAnAdvice) {
   }
 }
 
+TEST(HealthCheck, TheAdviceFitsEachCauseOfAReason) {
+  EXPECT_THAT(advice_for(Why::kCamerasUnsynchronized), HasSubstr("without a trigger"));
+  EXPECT_THAT(advice_for(Why::kMapFault), HasSubstr("datum and origin"));
+  EXPECT_THAT(advice_for(Why::kGnssContradicts), HasSubstr("delay of GNSS"));
+}
+
 TEST(Metrics, ShowStateAndPose) {
   const std::string text = metrics(running(HealthState::kDegraded, Why::kGnssMissing));
   for (const char* line :
@@ -140,6 +128,12 @@ TEST(Metrics, ShowStateAndPose) {
         "# TYPE bevloc_latency_seconds histogram\n"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
+}
+
+TEST(Metrics, CountHowOftenThePoseWasLost) {
+  Telemetry telemetry = running(HealthState::kTracking);
+  telemetry.snapshot.estimation.lost = 2;
+  EXPECT_THAT(metrics(telemetry), HasSubstr("bevloc_lost_total 2\n"));
 }
 
 TEST(Metrics, ShowCountersOfCamerasAndQueues) {
@@ -178,9 +172,7 @@ TEST(Metrics, ShowWhatBecameOfTheReportsOfGpsd) {
         "bevloc_gnss_refused_total{reason=\"stale\"} 2\n", "bevloc_gnss_age_max_seconds 0.25\n"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
-  const nlohmann::json status = status_json(telemetry, {}, Duration{});
-  EXPECT_EQ(status["gnss"]["fixes_refused"], 2);
-  EXPECT_THAT(status_page(status), HasSubstr("gpsd        connected; 5 samples, 3 reports and 2"));
+  EXPECT_EQ(status_json(telemetry, {}, Duration{})["gnss"]["fixes_refused"], 2);
 }
 
 TEST(Metrics, ShowTheRecording) {
@@ -203,9 +195,6 @@ TEST(Metrics, ShowTheRecording) {
         "bevloc_recording_failed 1\n"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
-  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
-              HasSubstr("recording   FAILED after 5 MB; 3 images and 4 events dropped, 6 black "
-                        "boxes kept\n"));
 }
 
 TEST(Metrics, NoStateHoldsInStandby) {
@@ -321,59 +310,6 @@ TEST(StatusJson, ShowsReasonsWithAdvice) {
   EXPECT_DOUBLE_EQ(status["pose"]["sigma"]["lateral_m"].get<double>(), 0.5);
   EXPECT_EQ(status["cameras"].size(), 6u);
   EXPECT_DOUBLE_EQ(status["memory_mb"].get<double>(), 2.0);
-}
-
-TEST(StatusPage, FitsATerminal) {
-  const std::string page =
-      status_page(status_json(running(HealthState::kDegraded, Why::kGnssMissing), {2e6, 1.0}, {}));
-  EXPECT_THAT(page, HasSubstr("DEGRADED, pose valid\n  GNSS missing: Check the antenna"));
-  EXPECT_THAT(page, HasSubstr("protection        1.25 m      1.50 m    2.00 deg\n"));
-  EXPECT_THAT(page, HasSubstr("front_left  "));
-  std::istringstream lines(page);
-  int count = 0;
-  for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 100u) << line;
-  EXPECT_LE(count, 24);
-}
-
-TEST(StatusPage, ShowsWhatCamerasAndBusLost) {
-  Telemetry telemetry = running(HealthState::kTracking);
-  telemetry.snapshot.cameras[1].unreadable = 23;
-  telemetry.snapshot.cameras[1].failures = 45;
-  telemetry.snapshot.bus.send_expired = 67;
-  telemetry.snapshot.bus.receive_dropped = 89;
-  telemetry.snapshot.bus.receive_overrun = 12;
-  const std::string page = status_page(status_json(telemetry, {}, {}));
-  EXPECT_THAT(page, HasSubstr("unreadable  failures  faults\n"));
-  EXPECT_THAT(page, testing::ContainsRegex("front +NO +0 +0 +0 +23 +45  \n"));
-  EXPECT_THAT(page, HasSubstr("0 sent and 67 dropped, 0 received and 89 lost, 12 overruns"));
-}
-
-TEST(StatusPage, ShowsWhatTheAuthenticationRefused) {
-  Telemetry telemetry = running(HealthState::kTracking);
-  EXPECT_FALSE(status_json(telemetry, {}, {}).contains("authentication"));
-  telemetry.snapshot.authentication = {
-      .authentic = 1, .wrong_mac = 2, .incomplete = 3, .no_freshness = 4};
-  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
-              HasSubstr("SecOC       1 epochs authentic; refused: 2 wrong code, 3 incomplete, 4 no "
-                        "freshness\n"));
-}
-
-TEST(StatusPage, SaysHowOftenAndWhyThePoseWasLost) {
-  Telemetry telemetry = running(HealthState::kTracking);
-  EXPECT_THAT(status_page(status_json(telemetry, {}, {})), Not(HasSubstr("lost 0 times")));
-  telemetry.snapshot.estimation.lost = 2;
-  telemetry.snapshot.estimation.lost_why = Why::kOdometryMissing;
-  EXPECT_THAT(status_page(status_json(telemetry, {}, {})),
-              HasSubstr("lost 2 times, the latest time because of: odometry missing\n"));
-  EXPECT_THAT(metrics(telemetry), HasSubstr("bevloc_lost_total 2\n"));
-}
-
-TEST(StatusPage, ShowsStandbyAndSurvivesOtherVersions) {
-  Telemetry standby;
-  standby.phase = Phase::kStandby;
-  EXPECT_THAT(status_page(status_json(standby, {}, {})), HasSubstr("standby: ignition off"));
-  EXPECT_THAT(status_page({{"phase", "running"}}), HasSubstr("NOT valid"));
-  EXPECT_THAT(status_page(nlohmann::json::array()), HasSubstr("no status"));
 }
 
 }  // namespace

@@ -43,6 +43,20 @@ TEST(ViewLogTest, TellsOnceByHowMuchGnssLags) {
   EXPECT_THAT(capture.text(), HasSubstr("GNSS: its headings agree with odometry again"));
 }
 
+TEST(ViewLogTest, TellsOnceWhetherTheTimeStampsAreLateOrEarly) {
+  const LogCapture capture;
+  ViewLog log;
+  ApplianceView view;
+  for (const int offset_ms : {0, 100, 90, 0, -35, 0}) {
+    view.stamp_offset_ms = offset_ms;
+    log.note(view, Time{});
+  }
+  EXPECT_THAT(capture.text(), HasSubstr("time stamps are 100 ms too late against the yaw rate"));
+  EXPECT_EQ(capture.text().find("90 ms"), std::string::npos);
+  EXPECT_THAT(capture.text(), HasSubstr("time stamps are 35 ms too early against the yaw rate"));
+  EXPECT_THAT(capture.text(), HasSubstr("time stamps agree with the yaw rate again"));
+}
+
 /// Notes views in turn, every 100 ms.
 class AlternatingViewsTest : public testing::Test {
  protected:

@@ -2,17 +2,14 @@
 #include <array>
 #include <cstring>
 #include <sstream>
-#include <variant>
+#include <vector>
 
 #include "can/bus/candump.h"
-#include "can/bus/controller_monitor.h"
 #include "can/bus/socketcan_codec.h"
 #include "can/dbc/dbc.h"
 #include "can/e2e/e2e.h"
 #include "can/messages/message_table.h"
-#include "can/messages/vehicle_input.h"
-#include "can/publisher/solution_fd.h"
-#include "tests/fuzz/finite_samples.h"
+#include "tests/fuzz/can_checks.h"
 #include "tests/fuzz/targets.h"
 
 namespace bevloc::fuzz {
@@ -84,16 +81,8 @@ void run_can_frames(Bytes bytes) {
   while (!source.is_empty()) {
     now += std::chrono::milliseconds(1);
     const can::ReadFrame read = reader.next(source);
-    if (const auto* error = std::get_if<can::ErrorFrame>(&read)) monitor.take(*error);
-    const auto* frame = std::get_if<can::Frame>(&read);
-    if (frame == nullptr) continue;
-    expect(can::is_valid_length(frame->format, frame->length), "a frame of invalid length");
-    expect(is_finite(input.accept({*frame, now})), "a sample that is not finite");
-    if (frame->length == can::loc_solution::kMessage.length) {
-      for (size_t part = 0; part < can::loc_solution::kParts.size(); ++part) {
-        can::part_of_solution(*frame, part, {});
-      }
-    }
+    const char* const mistake = mistake_in(read, input, monitor, now);
+    expect(mistake == nullptr, mistake);
   }
 }
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <vector>
 
-#include "common/crc32.h"
 #include "pipeline/map/formats/map_format.h"
 #include "pipeline/map/map_binary.h"
 #include "pipeline/map/map_check.h"
@@ -10,25 +9,11 @@
 #include "pipeline/map/tiles/tile_codec.h"
 #include "pipeline/map/tiles/tiled_map.h"
 #include "tests/fuzz/targets.h"
+#include "tests/pipeline/map/framed_map.h"
 #include "tests/pipeline/map/tiles/tile_file_changes.h"
 
 namespace bevloc::fuzz {
 namespace {
-
-void append_little_endian(std::string& bytes, uint32_t value, int count) {
-  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<char>(value >> (8 * i)));
-}
-
-/// A file with this body and a right header and CRC, which libFuzzer would hardly find.
-std::string framed(std::string_view body) {
-  constexpr uint32_t kVersion = 1;
-  std::string file(kMapMagic);
-  append_little_endian(file, kVersion, 2);
-  append_little_endian(file, static_cast<uint32_t>(body.size()), 4);
-  file += body;
-  append_little_endian(file, crc32(file), 4);
-  return file;
-}
 
 void use(const HdMap& map) {
   const MapIndex index(map);
@@ -83,7 +68,7 @@ void use_tiles(const std::string& file) {
 
 void run_bvm(Bytes bytes) {
   const std::string_view text = text_of(bytes);
-  use_parsed(text.starts_with(kMapMagic) ? text : framed(text), "fuzz.bvm");
+  use_parsed(text.starts_with(kMapMagic) ? text : test::framed_map(text), "fuzz.bvm");
   if (!is_tiled(text) || text.size() < kTileHeaderSize) return;
   const std::string tiled = with_right_checksums(text);
   use_parsed(tiled, "fuzz.bvm");

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/files.h"
 #include "sim/sim_rig.h"
+#include "tests/pipeline/network/damaged_model.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc {
@@ -169,14 +169,8 @@ TEST(Localizer, TheCheckPassesWithHypothesesBetweenTheCells) {
 }
 
 TEST(Localizer, TheCheckFindsDamagedWeights) {
-  std::string bytes = read_file(kModel).value();
-  for (size_t i = 0; i < 4096; ++i) {
-    char& byte = bytes[bytes.size() / 2 + i];
-    byte = static_cast<char>(byte ^ 0x20);
-  }
   const test::TemporaryFolder folder;
-  const auto path = folder / "damaged.onnx";
-  ASSERT_TRUE(write_file(path, bytes));
+  const auto path = test::damaged_model(folder);
   const HdMap map;
   const MapIndex index(map);
   auto localizer = Localizer::create(sim::nominal_rig(), index, path.string(), {});

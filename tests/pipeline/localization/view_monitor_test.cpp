@@ -214,6 +214,18 @@ TEST_F(ViewMonitorTest, WhatTheCameraCannotShowIsNoDirt) {
   expect_only(kDirty, ViewFault::kDirty);
 }
 
+/// Its image is always the same, so that it would soon count as frozen if it did not count as dark.
+TEST_F(ViewMonitorTest, ACameraThatCanShowNothingIsDark) {
+  monitor_.set_shown(kDirty, std::vector<uint8_t>(kNetworkPixels, 0));
+  for (int i = 0; i < 2 * ViewMonitor::kImages; ++i) {
+    moved_px_ += 3;
+    for (int camera = 0; camera < kCameraCount; ++camera) draw(camera, moved_px_);
+    fill(kDirty, kWhole, 0);
+    show(true);
+    expect_only(kDirty, ViewFault::kDark);
+  }
+}
+
 TEST_F(ViewMonitorTest, AWhiteImageAboveTheOwnVehicleIsBlinded) {
   std::vector<uint8_t> shown(static_cast<size_t>(kNetworkHeightPx) * kNetworkWidthPx, 1);
   std::fill_n(shown.begin() + 3 * kTile * kNetworkWidthPx, 3 * kTile * kNetworkWidthPx, 0);

@@ -9,11 +9,13 @@
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
 #include "sim/random.h"
+#include "tests/pipeline/map/framed_map.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bevloc {
 namespace {
 
+using test::framed_map;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -50,19 +52,6 @@ std::string decode_error(std::string_view bytes) {
   const auto map = decode_map(bytes, "town.bvm");
   EXPECT_FALSE(map.has_value());
   return map ? "" : map.error().message;
-}
-
-/// A file with the given body and a valid header and CRC.
-std::string framed(const std::string& body) {
-  std::string bytes = "BVMP";
-  const auto append = [&bytes](uint32_t value, int count) {
-    for (int i = 0; i < count; ++i) bytes.push_back(static_cast<char>(value >> (8 * i)));
-  };
-  append(1, 2);
-  append(static_cast<uint32_t>(body.size()), 4);
-  bytes += body;
-  append(crc32(bytes), 4);
-  return bytes;
 }
 
 TEST(Crc32, MatchesTheCheckValueOfTheStandard) {
@@ -180,26 +169,27 @@ TEST(MapBinary, ErrorsNameTheCause) {
 
 TEST(MapBinary, RefusesAnInvalidBodyWithAValidChecksum) {
   const std::string head = std::string(1, '\0') + std::string(16, '\0');  // no name, origin (0, 0)
-  EXPECT_TRUE(decode_map(framed(head + std::string(2, '\0')), "t").has_value());
-  EXPECT_THAT(decode_error(framed("")), HasSubstr("the end of the body"));
-  EXPECT_THAT(decode_error(framed("\x05"
-                                  "ab")),
+  EXPECT_TRUE(decode_map(framed_map(head + std::string(2, '\0')), "t").has_value());
+  EXPECT_THAT(decode_error(framed_map("")), HasSubstr("the end of the body"));
+  EXPECT_THAT(decode_error(framed_map("\x05"
+                                      "ab")),
               HasSubstr("a count that exceeds the body"));
-  EXPECT_THAT(decode_error(framed(head + std::string(3, '\0'))), HasSubstr("more bytes after"));
-  EXPECT_THAT(decode_error(framed(head + std::string("\xFF\xFF\xFF\xFF\x7F", 5))),
+  EXPECT_THAT(decode_error(framed_map(head + std::string(3, '\0'))), HasSubstr("more bytes after"));
+  EXPECT_THAT(decode_error(framed_map(head + std::string("\xFF\xFF\xFF\xFF\x7F", 5))),
               HasSubstr("a count that exceeds the body"));
-  EXPECT_THAT(decode_error(framed(std::string(11, '\xFF'))), HasSubstr("more than 64 bits"));
-  EXPECT_THAT(decode_error(framed(head + std::string("\x01\x03\x00\x00\x00", 5))),
+  EXPECT_THAT(decode_error(framed_map(std::string(11, '\xFF'))), HasSubstr("more than 64 bits"));
+  EXPECT_THAT(decode_error(framed_map(head + std::string("\x01\x03\x00\x00\x00", 5))),
               HasSubstr("an unknown class"));
-  EXPECT_THAT(decode_error(framed(head + std::string("\x01\x00\x63\x00\x00", 5))),
+  EXPECT_THAT(decode_error(framed_map(head + std::string("\x01\x00\x63\x00\x00", 5))),
               HasSubstr("an unknown appearance"));
   const std::string far = std::string(9, '\xFF') + '\x01';
-  EXPECT_THAT(decode_error(framed(head + std::string("\x01\x00\x00\x01", 4) + far + far + '\0')),
-              HasSubstr("a point beyond"));
+  EXPECT_THAT(
+      decode_error(framed_map(head + std::string("\x01\x00\x00\x01", 4) + far + far + '\0')),
+      HasSubstr("a point beyond"));
   const std::string lane = std::string("\x00\x01\x00\x00\x00", 5) + std::string(8, '\0');
-  EXPECT_THAT(decode_error(framed(head + lane + "\x01\x07")), HasSubstr("a successor"));
+  EXPECT_THAT(decode_error(framed_map(head + lane + "\x01\x07")), HasSubstr("a successor"));
   const std::string nan_latitude = '\0' + std::string(8, '\xFF') + std::string(10, '\0');
-  EXPECT_THAT(decode_error(framed(nan_latitude)), HasSubstr("a latitude"));
+  EXPECT_THAT(decode_error(framed_map(nan_latitude)), HasSubstr("a latitude"));
 }
 
 TEST(MapBinary, SurvivesRandomBodies) {
@@ -207,7 +197,7 @@ TEST(MapBinary, SurvivesRandomBodies) {
   for (int i = 0; i < 20'000; ++i) {
     std::string body(static_cast<size_t>(random.integer(0, 60)), '\0');
     for (char& byte : body) byte = static_cast<char>(random.integer(0, 3) * random.integer(0, 85));
-    const auto map = decode_map(framed(body), "town.bvm");
+    const auto map = decode_map(framed_map(body), "town.bvm");
     if (!map) {
       EXPECT_THAT(map.error().message, StartsWith("town.bvm: byte "));
     }

@@ -14,7 +14,7 @@ namespace bevloc::sim {
 namespace {
 
 HdMap road_with_everything() {
-  HdMap map = straight_road();
+  HdMap map = open_road();
   add_crossing(map, 9.0);
   add_divider(map, along_x(-80.0, -12.0, 3.0));
   add_kerb(map, arc({12.0, 40.0}, 31.0, -2.5, -0.8));
@@ -80,7 +80,7 @@ TEST(Corruption, AnEmptyMapGivesNothingButNoise) {
 }
 
 TEST(Corruption, MissesMoreFarAway) {
-  const HdMap map = straight_road();
+  const HdMap map = open_road();
   double near = 0.0;
   double far = 0.0;
   for (uint64_t seed = 0; seed < 40; ++seed) {

@@ -18,43 +18,42 @@ std::optional<RoadKind> kind_of(const HdMap& map, const Se2& pose = {},
 }
 
 TEST(RoadKind, LinesThroughTheWholeBoxAreStraightSolid) {
-  EXPECT_THAT(kind_of(straight_road()), Optional(RoadKind::kStraightSolid));
-  EXPECT_THAT(kind_of(straight_road(), {3.0, 1.0, radians(184.0)}),
-              Optional(RoadKind::kStraightSolid));
+  EXPECT_THAT(kind_of(open_road()), Optional(RoadKind::kStraightSolid));
+  EXPECT_THAT(kind_of(open_road(), {3.0, 1.0, radians(184.0)}), Optional(RoadKind::kStraightSolid));
 }
 
 TEST(RoadKind, ElementsThatContinueOneAnotherAreNoStructure) {
-  HdMap map = straight_road();
+  HdMap map = open_road();
   add_divider(map, along_x(-80.0, 5.0, 3.0));
   add_divider(map, along_x(5.02, 80.0, 3.02));
   EXPECT_THAT(kind_of(map), Optional(RoadKind::kStraightSolid));
 }
 
 TEST(RoadKind, ACrossingMakesAStraightRoadStructured) {
-  HdMap map = straight_road();
+  HdMap map = open_road();
   add_crossing(map, 12.0);
   EXPECT_THAT(kind_of(map), Optional(RoadKind::kStraightStructured));
 }
 
 TEST(RoadKind, ALineEndMakesAStraightRoadStructured) {
-  HdMap map = straight_road();
+  HdMap map = open_road();
   add_divider(map, along_x(-80.0, 10.0, 3.0));
   EXPECT_THAT(kind_of(map), Optional(RoadKind::kStraightStructured));
 }
 
 TEST(RoadKind, DashesMakeAStraightRoadStructured) {
   const MapDashes dashes{{kWholeLine}, regular_dashes(), {kWholeLine}};
-  EXPECT_THAT(kind_of(straight_road(), {}, dashes), Optional(RoadKind::kStraightStructured));
+  EXPECT_THAT(kind_of(open_road(), {}, dashes), Optional(RoadKind::kStraightStructured));
 }
 
 TEST(RoadKind, ContinuousLinesAreStraightSolidInASurveyedMapToo) {
   const MapDashes dashes(3, {kWholeLine});
-  EXPECT_THAT(kind_of(straight_road(), {}, dashes), Optional(RoadKind::kStraightSolid));
+  EXPECT_THAT(kind_of(open_road(), {}, dashes), Optional(RoadKind::kStraightSolid));
 }
 
 TEST(RoadKind, DashesAtTheRimAreNeitherSolidNorStructured) {
   const MapDashes dashes{{kWholeLine}, {{0.0, 111.0}, {114.0, 160.0}}, {kWholeLine}};
-  EXPECT_THAT(kind_of(straight_road(), {}, dashes), Eq(std::nullopt));  // a gap 31 m ahead
+  EXPECT_THAT(kind_of(open_road(), {}, dashes), Eq(std::nullopt));  // a gap 31 m ahead
 }
 
 TEST(RoadKind, DashesChangeNothingWhereTheRoadIsNotStraight) {
@@ -66,7 +65,7 @@ TEST(RoadKind, DashesChangeNothingWhereTheRoadIsNotStraight) {
 }
 
 TEST(RoadKind, StructureAtTheRimIsNeitherSolidNorStructured) {
-  HdMap map = straight_road();
+  HdMap map = open_road();
   add_crossing(map, 31.0);  // outside the box, but a box at the prior may show it
   EXPECT_THAT(kind_of(map), Eq(std::nullopt));
 }
@@ -99,7 +98,7 @@ TEST(RoadKind, ACircularIslandIsARoundabout) {
 }
 
 TEST(RoadKind, TheRoundEndOfAMedianIsNoRoundabout) {
-  HdMap map = straight_road();
+  HdMap map = open_road();
   Polyline median = arc({5.0, 0.0}, 1.0, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
   append(median, {{-80.0, 1.0}, {-80.0, -1.0}, median.front()});
   add_kerb(map, median);
@@ -107,7 +106,7 @@ TEST(RoadKind, TheRoundEndOfAMedianIsNoRoundabout) {
 }
 
 TEST(RoadKind, AKerbThatShiftsByALaneIsAMerge) {
-  HdMap map = straight_road();
+  HdMap map = open_road();
   map.elements.pop_back();
   Polyline taper{{-80.0, -6.0}};
   for (double x = -15.0; x <= 15.0; x += 1.0) {
@@ -119,7 +118,7 @@ TEST(RoadKind, AKerbThatShiftsByALaneIsAMerge) {
 }
 
 TEST(RoadKind, AParkingBayIsNoMerge) {
-  HdMap map = straight_road();
+  HdMap map = open_road();
   map.elements.pop_back();
   add_kerb(map, {{-80.0, -6.0}, {-10.0, -6.0}, {-6.0, -8.4}, {80.0, -8.4}});
   EXPECT_THAT(kind_of(map), Optional(RoadKind::kStraightStructured));
@@ -129,7 +128,7 @@ TEST(RoadKind, TooLittleLineHasNoKind) {
   HdMap map;
   add_kerb(map, along_x(0.0, 20.0, 6.0));
   EXPECT_THAT(kind_of(map), Eq(std::nullopt));
-  EXPECT_THAT(kind_of(straight_road(), {0.0, 400.0, 0.0}), Eq(std::nullopt));
+  EXPECT_THAT(kind_of(open_road(), {0.0, 400.0, 0.0}), Eq(std::nullopt));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ inline Polyline along_x(double from_m, double to_m, double y_m) {
 }
 
 /// Kerbs 6 m to either side and a divider between them, through the whole box.
-inline HdMap straight_road() {
+inline HdMap open_road() {
   HdMap map;
   add_kerb(map, along_x(-80.0, 80.0, 6.0));
   add_divider(map, along_x(-80.0, 80.0, 0.0));

@@ -18,7 +18,7 @@ using ::testing::SizeIs;
 /// A road with kerbs and a dashed divider, which the map has 5 cm too far left.
 World road_with_dashes(double phase_m) {
   World world;
-  world.map = straight_road();
+  world.map = open_road();
   world.map.elements[1].appearance = Appearance::kDashed;
   world.map.elements[1].points = along_x(0.0, 20.0, 0.05);
   world.paint_lines.push_back({.points = along_x(0.0, 20.0, 3.0), .dash_m = 1.0, .gap_m = 1.0});
@@ -77,7 +77,7 @@ TEST(SurveyedMap, HasAnElementForEveryDash) {
 }
 
 TEST(SurveyedMap, WithoutDashesEqualsTheMap) {
-  const HdMap map = straight_road();
+  const HdMap map = open_road();
   EXPECT_THAT(surveyed_map(map, {}).elements, SizeIs(map.elements.size()));
   const MapDashes unpainted{{kWholeLine}, {}, {kWholeLine}};
   EXPECT_THAT(surveyed_map(map, unpainted).elements, SizeIs(2));

@@ -127,7 +127,7 @@ TEST(VisibleLines, KeepTheirDashesWhenJoined) {
 }
 
 TEST(VisibleLines, AreEmptyOutsideTheMap) {
-  EXPECT_TRUE(lines_of(straight_road(), {0.0, 500.0, 0.0}).empty());
+  EXPECT_TRUE(lines_of(open_road(), {0.0, 500.0, 0.0}).empty());
 }
 
 }  // namespace

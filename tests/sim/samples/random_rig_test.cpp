@@ -8,6 +8,7 @@
 
 #include "common/se2.h"
 #include "pipeline/preprocessing/network_camera.h"
+#include "pipeline/preprocessing/view_check.h"
 #include "sim/sim_rig.h"
 
 namespace bevloc::sim {
@@ -70,6 +71,13 @@ TEST(RandomRig, CamerasKeepTheirSideOfTheVehicle) {
       EXPECT_GT(view.head<2>().normalized().dot(own.head<2>().normalized()),
                 std::cos(radians(8.5)));
     }
+  }
+}
+
+TEST(RandomRig, EachCameraShowsEnoughForTheNetwork) {
+  for (uint64_t seed = 0; seed < kRigs / 4; ++seed) {
+    const auto checked = check_views(random_rig(1.0, seed), "rig.yaml");
+    EXPECT_TRUE(checked) << checked.error().message;
   }
 }
 

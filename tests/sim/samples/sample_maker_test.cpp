@@ -9,6 +9,7 @@
 
 #include "pipeline/map/map_loader.h"
 #include "sim/sim_rig.h"
+#include "tests/support/turned_rig.h"
 
 namespace bevloc::sim {
 namespace {
@@ -161,6 +162,39 @@ TEST(SampleMaker, ARigReplacesTheSimulatorsOwn) {
     return std::ranges::count(image_of(sample, 4), 0);
   };
   EXPECT_GT(black(changed), black(own[0]) + 3 * kNetworkWidthPx);
+}
+
+TEST(SampleMaker, WhatTheCamerasOfARigDoNotShowIsBlack) {
+  SampleStream stream = stream_of(NuisanceSet::kSixCameras);
+  Rig rig = nominal_rig();
+  stream.rig = &rig;
+  rig.cameras[1] = test::turned_down(rig, 40.0).cameras[1];
+  rig.cameras[4] = test::turned_down(rig, -20.0).cameras[4];
+  const Sample sample = make(stream)[0];
+  EXPECT_EQ(std::ranges::count(image_of(sample, 1), 0), kImageSize) << "it sees the ground only";
+  const auto black_in_row = [&sample](size_t row) {
+    size_t count = 0;
+    for (size_t colour = 0; colour < 3; ++colour) {
+      const size_t first = (colour * kNetworkHeightPx + row) * kNetworkWidthPx;
+      count += std::ranges::count(image_of(sample, 4).subspan(first, kNetworkWidthPx), 0);
+    }
+    return count;
+  };
+  EXPECT_EQ(black_in_row(kNetworkHeightPx - 1), 3U * kNetworkWidthPx) << "below its image";
+  EXPECT_LT(black_in_row(static_cast<size_t>(kNetworkHorizonRow)), kNetworkWidthPx);
+}
+
+/// The samples of the training must not depend on the images that a drawn rig would have.
+TEST(SampleMaker, ADrawnRigHasNoBlackEdges) {
+  SampleStream stream = stream_of(NuisanceSet::kSixCameras);
+  stream.nuisances.rig_variety = 1.0;
+  const std::vector<Sample> drawn = make(stream);
+  const Rig rig = test::turned_down(nominal_rig(), 40.0);
+  stream.rig = &rig;
+  const std::vector<Sample> beside_a_given_one = make(stream);
+  for (size_t i = 0; i < kCount; ++i) {
+    EXPECT_TRUE(beside_a_given_one[i].images == drawn[i].images);
+  }
 }
 
 TEST(SampleMaker, NightIsDark) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pipeline/map/map_check.h"
+#include "pipeline/map/speed_unit.h"
 #include "pipeline/map/text_lines.h"
 #include "pipeline/map/xml_root.h"
 
@@ -25,8 +26,8 @@ constexpr double kRounding_m = 1e-6;
 constexpr size_t kMostOtherLanes = 1'000'000;
 
 double mps_from(std::string_view unit) {
-  if (unit == "km/h") return 1.0 / 3.6;
-  if (unit == "mph") return 0.44704;
+  if (unit == "km/h") return 1.0 / kKmh_per_mps;
+  if (unit == "mph") return kMps_per_mph;
   return 1.0;
 }
 

@@ -265,6 +265,10 @@ TEST(ImportRig, NuScenesHasThePoseOfTheCameraOnTheVehicle) {
   EXPECT_NEAR(chosen->rig.cameras[1].vehicle_from_camera.translation_m.x(), 1.6, 1e-6);
 }
 
+ForeignFile colmap_camera(const std::string& line) {
+  return {"sparse/cameras.txt", "# Camera list\n3 " + line + "\n"};
+}
+
 TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
   const Rig base = demo_rig();
   const auto image_of = [](const CameraModel& camera, const std::string& name) {
@@ -275,13 +279,10 @@ TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
                        q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), name);
   };
   const std::string images = "# Image list\n" + image_of(base.cameras[1], "front");
-  const auto cameras = [](const std::string& line) {
-    return ForeignFile{"sparse/cameras.txt", "# Camera list\n3 " + line + "\n"};
-  };
   RigImportOptions options = with_base();
   options.vehicle_from = {{"world", Se3{}}};
   const auto imported =
-      import_rig({cameras("OPENCV 640 360 510 512 320.5 180.5 -0.1 0.02 0.001 -0.002"),
+      import_rig({colmap_camera("OPENCV 640 360 510 512 320.5 180.5 -0.1 0.02 0.001 -0.002"),
                   {"sparse/images.txt", images}},
                  options);
   ASSERT_TRUE(imported) << imported.error().message;
@@ -296,14 +297,16 @@ TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
   options.vehicle_from = {{"front", base.cameras[1].vehicle_from_camera}};
   options.our_names = {{"side", "front_right"}};
   const auto both = import_rig(
-      {cameras("PINHOLE 640 360 510 512 320.5 180.5"), {"images.txt", images + "\n" + side}},
+      {colmap_camera("PINHOLE 640 360 510 512 320.5 180.5"), {"images.txt", images + "\n" + side}},
       options);
   ASSERT_TRUE(both) << both.error().message;
   EXPECT_TRUE(both->rig.cameras[2].vehicle_from_camera.translation_m.isApprox(
       base.cameras[2].vehicle_from_camera.translation_m, 1e-6));
+}
 
+TEST(ImportRig, TheLensModelsOfColmapBecomeOurs) {
+  RigImportOptions options = with_base();
   options.our_names = {{"3", "front"}};
-  options.vehicle_from.clear();
   const struct {
     const char* line;
     std::array<double, 4> distortion;
@@ -319,16 +322,17 @@ TEST(ImportRig, ColmapCountsPixelsFromTheCornerAndMapsIntoTheCamera) {
                   {0.01, 0.02, 0.003, 0.004},
                   true}};
   for (const auto& model : kModels) {
-    const auto read = import_rig({cameras(model.line)}, options);
+    const auto read = import_rig({colmap_camera(model.line)}, options);
     ASSERT_TRUE(read) << model.line << ": " << read.error().message;
     expect_projects_as(read->rig.cameras[1].intrinsics, {500, 500, 320, 180}, model.distortion,
                        model.fisheye, -0.5);
   }
-  expect_refused({cameras("FOV 640 360 500 500 320 180 0.9")}, options,
+  expect_refused({colmap_camera("FOV 640 360 500 500 320 180 0.9")}, options,
                  "sparse/cameras.txt:2: found FOV");
-  expect_refused({cameras("FULL_OPENCV 640 360 500 500 320 180 0 0 0 0 0.1 0 0 0")}, options,
+  expect_refused({colmap_camera("FULL_OPENCV 640 360 500 500 320 180 0 0 0 0 0.1 0 0 0")}, options,
                  "found k3 = 0.1");
-  expect_refused({cameras("PINHOLE 640 360 500 500 320")}, options, "found 3 parameters, wanted 4");
+  expect_refused({colmap_camera("PINHOLE 640 360 500 500 320")}, options,
+                 "found 3 parameters, wanted 4");
 }
 
 TEST(ImportRig, UnknownFilesAreRefused) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -45,11 +46,14 @@ double grey_of_street(double x_m, double y_m) {
 /// Two cameras record a drive along the street while the body rolls to and fro.
 class StreetRecording : public PictureRecording {
  public:
-  explicit StreetRecording(const Rig& truth) : reference_(poses()) {
+  static constexpr int kFramesets = 20;
+
+  explicit StreetRecording(const Rig& truth, int framesets = kFramesets)
+      : reference_(poses()), framesets_(static_cast<size_t>(framesets)) {
     for (const int camera : {kFrontLeft, kFront}) {
       const CameraModel& model = truth.cameras[static_cast<size_t>(camera)];
       const RoadPainter painter(model.intrinsics);
-      for (int i = 0; i < kFramesets; ++i) {
+      for (int i = 0; i < framesets; ++i) {
         const Time time = Time{} + from_seconds(1.0 + 0.3 * i);
         const Se2 pose = *reference_.at(time);
         const Se3 body{rotation_by({radians(0.8) * std::sin(2.1 * i), 0.0, 0.0}),
@@ -61,7 +65,7 @@ class StreetRecording : public PictureRecording {
   }
 
   const ReferenceTrajectory& reference() const override { return reference_; }
-  int framesets() const override { return kFramesets; }
+  int framesets() const override { return static_cast<int>(framesets_.size()); }
   void rewind() override { next_ = 0; }
   Status next(std::vector<RecordedPicture>& pictures) override {
     pictures.clear();
@@ -70,8 +74,6 @@ class StreetRecording : public PictureRecording {
   }
 
  private:
-  static constexpr int kFramesets = 20;
-
   static std::vector<ReferenceTrajectory::Pose> poses() {
     std::vector<ReferenceTrajectory::Pose> poses;
     for (int i = 0; i < 1000; ++i) {
@@ -81,7 +83,7 @@ class StreetRecording : public PictureRecording {
   }
 
   ReferenceTrajectory reference_;
-  std::array<std::vector<RecordedPicture>, kFramesets> framesets_;
+  std::vector<std::vector<RecordedPicture>> framesets_;
   size_t next_ = 0;
 };
 
@@ -114,6 +116,17 @@ TEST(RefineRig, FindsTheLineBesideABrightKerbFromARollingBody) {
     }
   }
   EXPECT_FALSE(refined->cameras[kFront].unobservable[kYaw]);
+}
+
+TEST(RefineRig, TellsHowFarApartFramesetsMustBe) {
+  const Rig rig = test::demo_rig();
+  const HdMap map = street();
+  StreetRecording recording(rig, 0);
+  const auto refined = refine_rig(rig, MapIndex(map), recording, RefinementOptions{});
+  ASSERT_FALSE(refined);
+  EXPECT_EQ(refined.error().message,
+            "pictures: found 0 framesets with a reference pose that are 1.5 m or 2 degrees apart, "
+            "wanted 20 or more; drive longer, or check the times of the reference poses");
 }
 
 }  // namespace

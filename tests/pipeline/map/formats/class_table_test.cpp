@@ -72,6 +72,30 @@ TEST(ClassTable, ChangesLanelet2Maps) {
             "\"way line_thin*\" fits; move the rule for \"way line_thin*\" before it");
 }
 
+TEST(ClassTable, MakesNoLineOfARelation) {
+  const std::string text = R"(<osm>
+    <node id="1" lat="49" lon="8"/><node id="2" lat="49.0005" lon="8"/>
+    <node id="3" lat="49.0005" lon="8.0005"/>
+    <way id="4"><nd ref="1"/><nd ref="2"/><tag k="type" v="line_thin"/></way>
+    <way id="5"><nd ref="2"/><nd ref="3"/></way>
+    <relation id="6"><member type="way" ref="5" role="outer"/>
+      <tag k="type" v="multipolygon"/><tag k="subtype" v="traffic_island"/></relation></osm>)";
+  const auto error_with = [&text](const std::string& rule) {
+    const auto table = ClassTable::parse("rules:\n  - " + rule + "\n", "classes.yaml");
+    EXPECT_TRUE(table.has_value()) << table.error().message;
+    ImportOptions options;
+    options.classes = &*table;
+    const auto imported = parse_imported(text, "island.osm", options);
+    return imported ? "" : imported.error().message;
+  };
+  const std::string kind = "relation multipolygon traffic_island";
+  EXPECT_EQ(error_with("{kind: " + kind + ", becomes: nothing}"), "");
+  EXPECT_EQ(error_with("{kind: '*', becomes: boundary}"), "") << "it also fits ways";
+  EXPECT_THAT(error_with("{kind: " + kind + ", becomes: crossing}"),
+              HasSubstr("classes.yaml: rules[0]: found a rule that makes lines of \"" + kind +
+                        "\", which has none in "));
+}
+
 TEST(MapFormat, MapsWithoutAnglesTakeThemFromTheirMgrsSquare) {
   const std::string text = R"(<osm>
     <node id="1" lat="" lon=""><tag k="local_x" v="81600"/><tag k="local_y" v="50100"/>

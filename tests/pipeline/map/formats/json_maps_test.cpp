@@ -10,10 +10,13 @@
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_checksum.h"
 #include "pipeline/map/map_loader.h"
+#include "tests/pipeline/map/formats/imported_map.h"
+#include "tests/support/text.h"
 
 namespace bevloc {
 namespace {
 
+using test::replaced;
 using testing::HasSubstr;
 
 /// Two lanes side by side from west to east, a third that follows the first one, a crossing, and
@@ -42,16 +45,8 @@ constexpr std::string_view kArgoverse = R"({
     {"x": 95, "y": -1, "z": 2}, {"x": 95, "y": 9, "z": 2}]}}
 })";
 
-std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
-  std::string result(text);
-  const size_t at = result.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? result : result.replace(at, from.size(), to);
-}
-
 std::string json_error(std::string_view text, const std::string& file = "map.json") {
-  const auto map = parse_imported(text, file, {});
-  return map ? "" : map.error().message;
+  return test::import_error(text, file);
 }
 
 long count_of(const HdMap& map, ElementClass element_class) {

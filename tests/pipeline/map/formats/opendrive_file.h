@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "pipeline/map/formats/opendrive/opendrive_reader.h"
+#include "tests/pipeline/map/formats/imported_map.h"
 
 namespace bevloc::test {
 
@@ -60,18 +60,6 @@ inline ImportedMap good(const std::string& text) {
   auto imported = read(text);
   EXPECT_TRUE(imported.has_value()) << road_error(text);
   return imported ? std::move(*imported) : ImportedMap{};
-}
-
-/// The elements of a class and appearance.
-inline std::vector<MapElement> of(const ImportedMap& imported, ElementClass element_class,
-                                  Appearance appearance) {
-  std::vector<MapElement> found;
-  for (const MapElement& element : imported.map.elements) {
-    if (element.element_class == element_class && element.appearance == appearance) {
-      found.push_back(element);
-    }
-  }
-  return found;
 }
 
 }  // namespace bevloc::test

@@ -10,10 +10,12 @@
 #include "pipeline/map/formats/geojson.h"
 #include "pipeline/map/formats/map_format.h"
 #include "pipeline/map/tangent_plane.h"
+#include "tests/pipeline/map/formats/imported_map.h"
 
 namespace bevloc {
 namespace {
 
+using test::import_error;
 using testing::Contains;
 using testing::HasSubstr;
 
@@ -34,28 +36,22 @@ ImportOptions with_origin() {
   return options;
 }
 
-std::string error_of(std::string_view text, const std::string& file,
-                     const ImportOptions& options = {}) {
-  const auto map = parse_imported(text, file, options);
-  return map ? "" : map.error().message;
-}
-
 TEST(Placement, AnOriginFarFromTheCoordinatesIsRefused) {
-  EXPECT_EQ(error_of(road_from(455'000, 5'428'000), "utm.xodr", with_origin()),
+  EXPECT_EQ(import_error(road_from(455'000, 5'428'000), "utm.xodr", with_origin()),
             "utm.xodr: found a map whose middle is at (456000, 5428000) m, wanted it within 83 km "
             "of (0, 0), because --origin gives the place of (0, 0)");
-  EXPECT_EQ(error_of(road_from(80'000, -80'000), "far.xodr", with_origin()), "");
-  EXPECT_THAT(error_of(R"(<osm>
+  EXPECT_EQ(import_error(road_from(80'000, -80'000), "far.xodr", with_origin()), "");
+  EXPECT_THAT(import_error(R"(<osm>
  <node id="1"><tag k="local_x" v="456000"/><tag k="local_y" v="5427000"/></node>
  <node id="2"><tag k="local_x" v="456080"/><tag k="local_y" v="5427000"/></node>
  <way id="11"><nd ref="1"/><nd ref="2"/><tag k="type" v="curbstone"/></way></osm>)",
-                       "local.osm", with_origin()),
+                           "local.osm", with_origin()),
               testing::StartsWith("local.osm: found a map whose middle is at (456"));
 }
 
 TEST(Placement, WordsOfProjThatAreNotKnownAreRefused) {
   const auto error_with = [](const std::string& words) {
-    return error_of(road_from(0, 0, "+proj=tmerc +lat_0=49 +lon_0=8 " + words), "proj.xodr");
+    return import_error(road_from(0, 0, "+proj=tmerc +lat_0=49 +lon_0=8 " + words), "proj.xodr");
   };
   for (const char* words :
        {"+pm=paris", "+a=6377397.155", "+b=6356078.963", "+R=6371000", "+K_0=0.9996",
@@ -64,7 +60,7 @@ TEST(Placement, WordsOfProjThatAreNotKnownAreRefused) {
     EXPECT_THAT(error_with(words), HasSubstr("<geoReference>: found " + word)) << words;
     EXPECT_THAT(error_with(words), HasSubstr("; --origin LATITUDE,LONGITUDE takes its place"));
     EXPECT_THAT(
-        error_of(road_from(5e5, 5.4e6, std::string("+proj=utm +zone=32 ") + words), "u.xodr"),
+        import_error(road_from(5e5, 5.4e6, std::string("+proj=utm +zone=32 ") + words), "u.xodr"),
         HasSubstr("found " + word));
   }
   for (const char* words :
@@ -79,9 +75,9 @@ TEST(Placement, WordsOfProjThatAreNotKnownAreRefused) {
 TEST(Placement, OnlyAMapNearZeroIsToldOfTheOrigin) {
   constexpr std::string_view kDelete = "delete the geoReference, and the map has no place on earth";
   const std::string start = "map.xodr:1: <geoReference>: found +proj=aea, wanted utm or tmerc; ";
-  EXPECT_EQ(error_of(road_from(4'468'000, 5'333'000, "+proj=aea"), "map.xodr"),
+  EXPECT_EQ(import_error(road_from(4'468'000, 5'333'000, "+proj=aea"), "map.xodr"),
             fmt::format("{}{}", start, kDelete));
-  EXPECT_EQ(error_of(road_from(0, 0, "+proj=aea"), "map.xodr"),
+  EXPECT_EQ(import_error(road_from(0, 0, "+proj=aea"), "map.xodr"),
             fmt::format("{}--origin LATITUDE,LONGITUDE takes its place; or {}", start, kDelete));
 }
 
@@ -102,15 +98,15 @@ TEST(Placement, EpsgCodesOfUtmZonesAreRead) {
     EXPECT_TRUE(is_known(found)) << code;
   }
   for (const std::string code : {"epsg:31467", "epsg:32661", "epsg:25839", "esri:32632"}) {
-    EXPECT_THAT(error_of(road_from(0, 0, "+init=" + code), "epsg.xodr"),
+    EXPECT_THAT(import_error(road_from(0, 0, "+init=" + code), "epsg.xodr"),
                 HasSubstr("found +init=" + code + ", wanted the EPSG code of a UTM zone"));
   }
 }
 
 TEST(Placement, UtmNeedsItsZone) {
-  EXPECT_THAT(error_of(road_from(0, 0, "+proj=utm +ellps=WGS84"), "utm.xodr"),
+  EXPECT_THAT(import_error(road_from(0, 0, "+proj=utm +ellps=WGS84"), "utm.xodr"),
               HasSubstr("found no +zone, wanted 1 to 60"));
-  EXPECT_THAT(error_of(road_from(0, 0, "+proj=utm +zone=61"), "utm.xodr"),
+  EXPECT_THAT(import_error(road_from(0, 0, "+proj=utm +zone=61"), "utm.xodr"),
               HasSubstr("found +zone=61, wanted"));
 }
 
@@ -118,16 +114,16 @@ TEST(Placement, UtmCoordinatesNearZeroAreRefused) {
   for (const char* words :
        {"+proj=utm +zone=32 +datum=WGS84", "+proj=utm +zone=32 +south +datum=WGS84",
         "+proj=tmerc +lat_0=0 +lon_0=9 +x_0=3500000"}) {
-    EXPECT_THAT(error_of(road_from(0, 0, words), "utm.xodr"),
+    EXPECT_THAT(import_error(road_from(0, 0, words), "utm.xodr"),
                 testing::AllOf(
                     HasSubstr("utm.xodr:1: <geoReference>: found the middle of the map at ("),
                     HasSubstr(" km from the meridian of the projection, wanted at most 400 km; add "
                               "the missing <offset>"),
                     HasSubstr("; --origin LATITUDE,LONGITUDE takes its place")))
         << words;
-    EXPECT_EQ(error_of(road_from(0, 0, words), "utm.xodr", with_origin()), "");
+    EXPECT_EQ(import_error(road_from(0, 0, words), "utm.xodr", with_origin()), "");
   }
-  EXPECT_THAT(error_of(road_from(3'456'000, 5'429'000, "+proj=utm +zone=32"), "utm.xodr"),
+  EXPECT_THAT(import_error(road_from(3'456'000, 5'429'000, "+proj=utm +zone=32"), "utm.xodr"),
               HasSubstr("add the missing <offset>"));
 }
 

@@ -1,6 +1,4 @@
 // Crossings and other closed lines of all formats.
-#include <algorithm>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,10 +6,12 @@
 #include "pipeline/map/formats/map_format.h"
 #include "pipeline/map/lanelet_geometry.h"
 #include "pipeline/map/map_checksum.h"
+#include "tests/pipeline/map/formats/imported_map.h"
 
 namespace bevloc {
 namespace {
 
+using test::of;
 using testing::Contains;
 using testing::HasSubstr;
 
@@ -22,16 +22,7 @@ ImportedMap map_of(std::string_view text, const std::string& file, const std::st
     table = ClassTable::parse("rules:\n" + rules, "classes.yaml").value();
     options.classes = &table;
   }
-  auto map = parse_imported(text, file, options);
-  EXPECT_TRUE(map.has_value()) << map.error().message;
-  return map.value_or(ImportedMap{});
-}
-
-std::vector<MapElement> of(const ImportedMap& map, ElementClass element_class) {
-  std::vector<MapElement> found;
-  std::ranges::copy_if(map.map.elements, std::back_inserter(found),
-                       [&](const MapElement& e) { return e.element_class == element_class; });
-  return found;
+  return test::imported(text, file, options);
 }
 
 std::vector<std::string> reasons_of(const ImportedMap& map) {

@@ -9,20 +9,16 @@
 #include "common/json_dump.h"
 #include "pipeline/map/formats/geojson.h"
 #include "pipeline/map/formats/map_format.h"
+#include "pipeline/map/map_binary.h"
 #include "pipeline/map/tangent_plane.h"
+#include "tests/pipeline/map/formats/imported_map.h"
 
 namespace bevloc {
 namespace {
 
+using test::imported;
 using testing::Contains;
 using testing::HasSubstr;
-
-ImportedMap imported(std::string_view text, const std::string& file,
-                     const ImportOptions& options = {}) {
-  auto map = parse_imported(text, file, options);
-  EXPECT_TRUE(map.has_value()) << map.error().message;
-  return map.value_or(ImportedMap{});
-}
 
 std::string collection(std::string_view members, std::string_view features) {
   return fmt::format(R"({{"type": "FeatureCollection", {}"features": [{}]}})", members, features);
@@ -126,6 +122,14 @@ TEST(UnusualText, AByteOrderMarkMayComeBeforeJson) {
       "\xEF\xBB\xBF\n" + collection("", "\n" + divider("[[8.4, 149]]")), "b.json", {});
   ASSERT_FALSE(broken.has_value());
   EXPECT_THAT(broken.error().message, HasSubstr("b.json:4: /features/0/geometry/coordinates/0"));
+}
+
+TEST(UnusualCompactMap, TheErrorOfADamagedOneSaysWhatToDo) {
+  const std::string bytes = encode_map(HdMap{});
+  const auto map =
+      parse_imported(std::string_view(bytes).substr(0, bytes.size() - 1), "town.bvm", {});
+  ASSERT_FALSE(map);
+  EXPECT_THAT(map.error().message, HasSubstr("make it again with `bevloc_convert_map`"));
 }
 
 TEST(UnusualArgoverse2, AnOutlineThatIsTooLongIsLeftOut) {

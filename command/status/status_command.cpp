@@ -1,4 +1,4 @@
-#include "firmware/live/status_command.h"
+#include "command/status/status_command.h"
 
 #include <cerrno>
 #include <chrono>
@@ -11,12 +11,13 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "command/status/status_page.h"
 #include "common/file_descriptor.h"
+#include "common/result.h"
 #include "firmware/config/live_config.h"
 #include "firmware/live/httplib_header.h"
-#include "firmware/status/status_json.h"
 
-namespace bevloc::firmware {
+namespace bevloc::command {
 namespace {
 
 constexpr time_t kPatience_s = 3;
@@ -26,7 +27,7 @@ constexpr std::chrono::seconds kLongestAnswer(5);
 
 /// Accepts the addresses that the server answers to (is_local_host_header() in http_server.cpp).
 std::string check_address(const std::string& text) {
-  if (text == "localhost" || is_ip_address(text)) return "";
+  if (text == "localhost" || firmware::is_ip_address(text)) return "";
   return fmt::format("found '{}', wanted an IP address in numbers, such as 127.0.0.1, or localhost",
                      text);
 }
@@ -67,7 +68,7 @@ Result<Answer> ask(const std::string& address, int port) {
   httplib::Client client(address, port);
   client.set_connection_timeout(kPatience_s);
   client.set_read_timeout(kPatience_s);
-  const std::string place = authority_of({address, port, false});
+  const std::string place = firmware::authority_of({address, port, false});
   std::string text;
   const auto until = std::chrono::steady_clock::now() + kLongestAnswer;
   const auto response = client.Get("/status.json", [&](const char* part, size_t size) {
@@ -133,4 +134,4 @@ int StatusCommand::run() const {
   }
 }
 
-}  // namespace bevloc::firmware
+}  // namespace bevloc::command

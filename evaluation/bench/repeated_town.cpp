@@ -1,4 +1,4 @@
-#include "evaluation/bench/tiled_map.h"
+#include "evaluation/bench/repeated_town.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pipeline/map/lanelet_geometry.h"
+#include "pipeline/map/map_points.h"
 
 namespace bevloc::bench {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kM_per_km = 1e3;
 /// Gap between copies.
 constexpr double kGap_m = 100.0;
 
-double road_km(const MapElement& element) {
+double element_km(const MapElement& element) {
   if (element.element_class != ElementClass::kRoadBoundary) return 0.0;
   return 0.5 * polyline_length(element.points) / kM_per_km;
 }
@@ -37,49 +38,36 @@ HdMap nearest_part(const HdMap& map, const Eigen::Vector2d& place, double wanted
   double km = 0.0;
   for (size_t i = 0; i < by_distance.size() && km < wanted_km; ++i) {
     part.elements.push_back(*by_distance[i].second);
-    km += road_km(part.elements.back());
+    km += element_km(part.elements.back());
   }
   return part;
-}
-
-Eigen::Vector2d extent_of(const HdMap& map) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Eigen::Vector2d low(kFar, kFar);
-  Eigen::Vector2d high = -low;
-  for (const MapElement& element : map.elements) {
-    for (const Eigen::Vector2d& point : element.points) {
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-  }
-  return high - low;
 }
 
 }  // namespace
 
 double road_km(const HdMap& map) {
   double km = 0.0;
-  for (const MapElement& element : map.elements) km += road_km(element);
+  for (const MapElement& element : map.elements) km += element_km(element);
   return km;
 }
 
-HdMap tiled_map(const HdMap& map, const Eigen::Vector2d& place, double wanted_km) {
-  const double tile_km = road_km(map);
-  if (wanted_km < tile_km || tile_km == 0.0) return nearest_part(map, place, wanted_km);
-  const auto copies = static_cast<size_t>(std::lround(wanted_km / tile_km));
+HdMap repeated_town(const HdMap& map, const Eigen::Vector2d& place, double wanted_km) {
+  const double town_km = road_km(map);
+  if (wanted_km < town_km || town_km == 0.0) return nearest_part(map, place, wanted_km);
+  const auto copies = static_cast<size_t>(std::lround(wanted_km / town_km));
   const auto side = static_cast<size_t>(std::ceil(std::sqrt(static_cast<double>(copies))));
-  const Eigen::Vector2d pitch = extent_of(map) + Eigen::Vector2d::Constant(kGap_m);
-  HdMap tiled;
-  tiled.elements.reserve(copies * map.elements.size());
+  const Eigen::Vector2d pitch = bounds_of(map).sizes() + Eigen::Vector2d::Constant(kGap_m);
+  HdMap repeated;
+  repeated.elements.reserve(copies * map.elements.size());
   for (size_t copy = 0; copy < copies; ++copy) {
     const Eigen::Vector2d moved(pitch.x() * static_cast<double>(copy % side),
                                 pitch.y() * static_cast<double>(copy / side));
     for (const MapElement& element : map.elements) {
-      tiled.elements.push_back(element);
-      for (Eigen::Vector2d& point : tiled.elements.back().points) point += moved;
+      repeated.elements.push_back(element);
+      for (Eigen::Vector2d& point : repeated.elements.back().points) point += moved;
     }
   }
-  return tiled;
+  return repeated;
 }
 
 }  // namespace bevloc::bench

@@ -1,4 +1,4 @@
-#include "evaluation/bench/tiled_map.h"
+#include "evaluation/bench/repeated_town.h"
 
 #include <gtest/gtest.h>
 
@@ -25,21 +25,21 @@ HdMap two_roads() {
   return map;
 }
 
-TEST(TiledMap, RoadIsHalfItsBoundaries) {
+TEST(RepeatedTown, RoadIsHalfItsBoundaries) {
   EXPECT_DOUBLE_EQ(road_km(two_roads()), 2.0);
   EXPECT_DOUBLE_EQ(road_km(HdMap()), 0.0);
 }
 
-TEST(TiledMap, AShortMapHasTheNearestElements) {
-  const HdMap map = tiled_map(two_roads(), {100.0, 5000.0}, 1.0);
+TEST(RepeatedTown, AShortMapHasTheNearestElements) {
+  const HdMap map = repeated_town(two_roads(), {100.0, 5000.0}, 1.0);
   ASSERT_EQ(map.elements.size(), 3U);
   for (const MapElement& element : map.elements) EXPECT_GE(element.points[0].y(), 5000.0);
   EXPECT_DOUBLE_EQ(road_km(map), 1.0);
 }
 
-TEST(TiledMap, ALongMapHasCopiesAndKeepsTheFirstInPlace) {
+TEST(RepeatedTown, ALongMapHasCopiesAndKeepsTheFirstInPlace) {
   const HdMap town = two_roads();
-  const HdMap map = tiled_map(town, {0.0, 0.0}, 14.0);
+  const HdMap map = repeated_town(town, {0.0, 0.0}, 14.0);
   EXPECT_DOUBLE_EQ(road_km(map), 14.0);
   ASSERT_EQ(map.elements.size(), 7 * town.elements.size());
   EXPECT_EQ(map.elements[0].points[2], town.elements[0].points[2]);
@@ -47,19 +47,19 @@ TEST(TiledMap, ALongMapHasCopiesAndKeepsTheFirstInPlace) {
   EXPECT_EQ(map.elements[18].points[0].y(), 5108.0);
 }
 
-TEST(TiledMap, AnEmptyMapStaysEmpty) {
-  EXPECT_TRUE(tiled_map(HdMap(), {0.0, 0.0}, 10.0).elements.empty());
+TEST(RepeatedTown, AnEmptyMapStaysEmpty) {
+  EXPECT_TRUE(repeated_town(HdMap(), {0.0, 0.0}, 10.0).elements.empty());
 }
 
 /// The sweep relies on this: maps of all lengths need the same drawing.
-TEST(TiledMap, LooksTheSameAroundThePlace) {
+TEST(RepeatedTown, LooksTheSameAroundThePlace) {
   const sim::World world = sim::generate_world(7);
   sim::Random random(1);
   const Se2 place = sim::random_pose_on_road(world, random);
   std::vector<std::vector<uint8_t>> rasters;
   std::vector<size_t> segments;
   for (const double km : {1.0, 10.0, 100.0}) {
-    const HdMap map = tiled_map(world.map, place.translation(), km);
+    const HdMap map = repeated_town(world.map, place.translation(), km);
     const MapIndex index(map);
     rasters.emplace_back(kRasterSize);
     MapRasterizer(index).draw(place, rasters.back());

@@ -13,6 +13,6 @@ double road_km(const HdMap& map);
 /// A map with about `wanted_km` of road and no lanes. If `map` is long enough, the result has its
 /// elements nearest to `place`. Otherwise it has copies of `map` side by side, the first one at its
 /// original position.
-HdMap tiled_map(const HdMap& map, const Eigen::Vector2d& place, double wanted_km);
+HdMap repeated_town(const HdMap& map, const Eigen::Vector2d& place, double wanted_km);
 
 }  // namespace bevloc::bench

@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace bevloc::firmware {
+namespace bevloc::command {
 
 /// Reads /status.json of a daemon with the section `live`. One thread.
 class StatusCommand {
@@ -27,4 +27,4 @@ class StatusCommand {
   bool json_ = false;
 };
 
-}  // namespace bevloc::firmware
+}  // namespace bevloc::command
