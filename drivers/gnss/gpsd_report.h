@@ -48,11 +48,12 @@ struct GpsdReport {
 ///
 /// The sigma of a fix comes from the receiver's own accuracy report (GST), if three things hold:
 /// the latest GST is from the same receiver, it is at most 1.5 s older than the fix, and mode and
-/// status have not changed since. Otherwise eph of the position report (TPV), divided over the
-/// axes, counts as one sigma, and epx with epy only if there is no eph: with UBX, eph is the
-/// receiver's own accuracy, and epx and epy are guesses of gpsd. This is cautious: gpsd does not
-/// state the confidence level, and many receivers give the bound of 95 %. If the receiver states no
-/// accuracy, gpsd estimates it from the dilution of precision. One thread.
+/// status have not changed since. Otherwise, eph of the position report (TPV) divided by the square
+/// root of 2 is the sigma of each axis. Without eph, the sigmas are epx and epy. eph comes first,
+/// because with UBX it is the receiver's own accuracy, and epx and epy are guesses of gpsd. This is
+/// cautious: gpsd does not state the confidence level, and many receivers give the bound of 95 %.
+/// If the receiver states no accuracy, gpsd estimates it from the dilution of precision. One
+/// thread.
 class GpsdReader {
  public:
   GpsdReport read(std::string_view line);

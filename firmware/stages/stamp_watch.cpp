@@ -54,7 +54,7 @@ void StampWatch::compare_heading(const VisionReport& report) {
 
 void StampWatch::note_gap() {
   monitor_.note_gap();
-  // A jump that bends overruled stays overruled.
+  // Nothing changes after a jump back, or after a jump that bends overruled.
   if (!latest_jumped_ || !jumped_) return;
   // The next report says whether the stamps are still off.
   latest_jumped_ = jumped_ = false;

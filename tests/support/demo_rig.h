@@ -9,8 +9,8 @@ inline Rig demo_rig() {
   return read_rig(BEVLOC_SOURCE_DIR "/config/rig_demo.yaml").value();
 }
 
-/// The rig of the demo with pictures of 1 / `divisor` of the width and height. The simulator draws
-/// them sooner.
+/// The rig of the demo with smaller pictures, which the simulator draws faster. Width and height
+/// are divided by `divisor`.
 inline Rig small_demo_rig(int divisor) {
   Rig rig = demo_rig();
   for (CameraModel& camera : rig.cameras) {
