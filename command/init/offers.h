@@ -20,8 +20,8 @@ struct Offers {
   std::vector<std::string> can_interfaces;
 };
 
-/// Looks for devices. `libcamera_ids` are the ids that libcamera lists, for which no `machine` is
-/// needed.
+/// Looks for devices. `libcamera_ids` are the ids of libcamera's cameras, which the caller has
+/// looked up.
 Offers offers_of(const Machine& machine, const std::vector<std::string>& libcamera_ids);
 
 /// Returns the ids of libcamera's cameras, or none if this program was built without libcamera.

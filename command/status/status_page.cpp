@@ -94,6 +94,11 @@ std::string inputs_of(const nlohmann::json& status) {
       "\nvehicle     {} odometry and {} GNSS samples; {} frames lost, {} refused by E2E\n",
       text_at(status, "vehicle.odometry_samples"), text_at(status, "vehicle.gnss_samples"),
       text_at(status, "vehicle.frames_lost"), text_at(status, "vehicle.e2e_refused"));
+  text += fmt::format(
+      "            {} epochs incomplete, {} SNA or out of range, {} implausible, {} came too "
+      "rarely\n",
+      text_at(status, "vehicle.incomplete"), text_at(status, "vehicle.not_available"),
+      text_at(status, "vehicle.odometry_refused"), text_at(status, "vehicle.slow_odometry"));
   if (status.contains("authentication")) {
     text += fmt::format(
         "SecOC       {} epochs authentic; refused: {} wrong code, {} incomplete, {} no freshness\n",
@@ -109,6 +114,20 @@ std::string inputs_of(const nlohmann::json& status) {
         text_at(status, "gnss.fixes_refused"), text_at(status, "gnss.age_max_ms", "{:.0f}"));
   }
   return text;
+}
+
+std::string framesets_of(const nlohmann::json& status) {
+  // Without a latency, the quantiles are 0.
+  const bool measured = text_at(status, "latency_ms.count") != "0";
+  const auto latency = [&](const char* path) {
+    return measured ? text_at(status, path, "{:.0f}") : std::string("-");
+  };
+  return fmt::format(
+      "rate        {} framesets per second; latency {} ms median, {} ms for 99 %\n"
+      "framesets   {} taken, {} skipped, {} without a prior, {} with too few usable images\n",
+      text_at(status, "rate_hz", "{:.1f}"), latency("latency_ms.median"), latency("latency_ms.p99"),
+      text_at(status, "framesets.taken"), text_at(status, "framesets.skipped"),
+      text_at(status, "framesets.without_prior"), text_at(status, "framesets.refused"));
 }
 
 std::string recording_line(const nlohmann::json& status) {
@@ -133,14 +152,7 @@ std::string status_page(const nlohmann::json& status) {
                       text_at(status, "pose.yaw_deg", "{:.2f}"),
                       text_at(status, "pose.speed_mps", "{:.1f}"));
   text += accuracy_of(status);
-  text += fmt::format("rate        {} framesets per second; latency {} ms median, {} ms for 99 %\n",
-                      text_at(status, "rate_hz", "{:.1f}"),
-                      text_at(status, "latency_ms.median", "{:.0f}"),
-                      text_at(status, "latency_ms.p99", "{:.0f}"));
-  text += fmt::format("framesets   {} taken, {} skipped, {} without a prior\n\n{}",
-                      text_at(status, "framesets.taken"), text_at(status, "framesets.skipped"),
-                      text_at(status, "framesets.without_prior"), cameras_of(status));
-  text += inputs_of(status);
+  text += framesets_of(status) + "\n" + cameras_of(status) + inputs_of(status);
   text += fmt::format(
       "CAN         {}; {} sent and {} dropped, {} received and {} lost, {} overruns, {} error "
       "frames\n",

@@ -48,6 +48,7 @@ void SnapshotKeeper::observe(const firmware::VisionSnapshot& snapshot) {
   const std::span<const float> mask = snapshot.perceived_mask();
   sheet.mask_logits.assign(mask.begin(), mask.end());
   sheet.matched_at = snapshot.report.prior;
+  sheet.reference_from_exposure = snapshot.reference_from_exposure;
   sheet.solution = snapshot.solution;
   sheet.hypotheses = snapshot.hypotheses;
 }

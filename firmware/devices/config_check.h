@@ -10,13 +10,13 @@
 namespace bevloc::firmware {
 
 /// Fails if a camera shows too little for the network, and logs the warning if it shows less than
-/// it should (check_views()). `file`: the rig's.
+/// it should (check_views()). `file` is the file of the rig, for messages.
 Status check_shown(const Rig& rig, const std::filesystem::path& file);
 
 /// Checks on this machine everything that the configuration names (`bevlocd --check-config`): reads
-/// rig, model, map and recordings, runs network and solvers on the test frame (Localizer::check()),
-/// looks up the GPIO lines, opens the CAN interface, and starts the cameras. Returns the first
-/// error. The test frame takes as long as a few matches.
+/// rig, model, map and picture folders, runs network and solvers on the test frame
+/// (Localizer::check()), looks up the GPIO lines, opens the CAN interface, and starts the cameras.
+/// Returns the first error. The test frame takes as long as a few matches.
 Status check_config(const Config& config);
 
 }  // namespace bevloc::firmware

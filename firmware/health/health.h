@@ -57,13 +57,15 @@ struct HealthInputs {
   Duration valid_age = Duration::max();  ///< time since the pose became valid, while it is valid
   int accepted_in_a_row = 0;
   int refused_in_a_row = 0;
-  Verdict verdict;                    ///< verdict of the arbiter
-  bool odometry_implausible = false;  ///< the latest odometry sample was refused (OdometryMonitor)
-  bool foreign_sender = false;        ///< a foreign sender was noticed (can::VehicleFaultTimes)
-  bool start_confirmed = true;        ///< matches and GNSS suffice to trust a new pose
-  bool clock_gap = false;             ///< time has jumped
-  bool calibration_fault = false;     ///< a camera is not where the calibration says
-  bool overloaded = false;            ///< framesets were skipped for the latest one
+  Verdict verdict;  ///< verdict of the arbiter
+  /// OdometryMonitor refused the latest odometry sample, or the odometry on the bus was implausible
+  /// within the last second (can::VehicleFaultTimes).
+  bool odometry_implausible = false;
+  bool foreign_sender = false;     ///< a foreign sender was noticed (can::VehicleFaultTimes)
+  bool start_confirmed = true;     ///< matches and GNSS suffice to trust a new pose
+  bool clock_gap = false;          ///< time has jumped
+  bool calibration_fault = false;  ///< a camera is not where the calibration says
+  bool overloaded = false;         ///< framesets were skipped for the latest one
   double longitudinal_sigma_m = 0.0;
   double lateral_sigma_m = 0.0;
   double yaw_sigma_rad = 0.0;

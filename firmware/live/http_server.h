@@ -24,7 +24,7 @@ struct HttpLimits {
   size_t workers = 8;   ///< threads, which is the number of requests at the same time
   size_t queued = 32;   ///< requests that wait for a thread
   Duration idle = std::chrono::seconds(10);    ///< time until the first byte of a request
-  Duration request = std::chrono::seconds(3);  ///< time from there until its last byte
+  Duration request = std::chrono::seconds(3);  ///< time from the request's first byte to its last
   Duration write = std::chrono::seconds(3);    ///< time until the client accepts the next bytes
   size_t request_bytes = 16384;                ///< size of request line and headers
 };

@@ -126,15 +126,17 @@ std::string camera_event(const MapIndex& map, const Rig& rig, const LiveSample& 
   if (!jpeg) return {};
   const CameraModel& camera = rig.cameras[sample.camera];
   ProjectedMap projected(map);
+  const auto lines_at = [&](const Se2& pose) {
+    return lines_of(projected.in_image(pose * sample.reference_from_exposure, camera), 1);
+  };
   json data{{"camera", kCameraNames[sample.camera]},
             {"width_px", sample.image.width},
             {"height_px", sample.image.height},
             {"used", static_cast<bool>(sample.present[sample.camera])},
             {"jpeg", base64(*jpeg)},
-            {"prior", lines_of(projected.in_image(sample.prior, camera), 1)}};
-  data["corrected"] = sample.match.evidence == Evidence::kGood
-                          ? lines_of(projected.in_image(corrected_pose(sample), camera), 1)
-                          : json(nullptr);
+            {"prior", lines_at(sample.prior)}};
+  data["corrected"] =
+      sample.match.evidence == Evidence::kGood ? lines_at(corrected_pose(sample)) : json(nullptr);
   return server_sent_event("camera", data);
 }
 

@@ -20,7 +20,8 @@ struct TrailPoint {
   bool begins = false;  ///< there was no pose between this place and the one before
 };
 
-// These functions return the events, whose keys docs/live.md describes.
+// These functions return the events that the page draws. docs/live.md names them. Their keys are
+// for the page alone.
 
 /// `sent` is the time of a clock of the machine that goes on at real time, also in a drive with
 /// --fast and while the machine is suspended. Its zero is arbitrary.
@@ -35,8 +36,8 @@ std::string map_event(const MapIndex& map, const Eigen::Vector2d& centre_m, doub
 /// distributions. `sample` must have a mask.
 std::string match_event(const MapIndex& map, const LiveSample& sample);
 /// Returns the event with one camera image, and with the places of the map's lines in it at the
-/// prior and at the corrected pose. `sample` must have an image. The result is empty if the image
-/// is damaged.
+/// prior and at the corrected pose, each moved to the exposure of the image. `sample` must have an
+/// image. The result is empty if the image is damaged.
 std::string camera_event(const MapIndex& map, const Rig& rig, const LiveSample& sample,
                          PictureMaker& pictures);
 

@@ -54,6 +54,7 @@ void LiveFeed::copy(const VisionSnapshot& snapshot) {
   sample_.probabilities[2] = snapshot.solution.yaw_probability;
   sample_.camera = next_camera_;
   next_camera_ = (next_camera_ + 1) % kCameraCount;
+  sample_.reference_from_exposure = snapshot.reference_from_exposure[sample_.camera];
   sample_.has_image = false;
   if (snapshot.frameset.present[sample_.camera]) {
     copy_image(snapshot.frameset.frames[sample_.camera].image());

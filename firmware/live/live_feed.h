@@ -21,6 +21,8 @@ struct LiveSample {
   ImageView image;  ///< its planes lie in `bytes`
   Pixels bytes;
   Se2 prior;
+  /// The vehicle's pose at the exposure of the image, in the vehicle frame at the prior.
+  Se2 reference_from_exposure;
   MatchResult match;
   HypothesisGrid hypotheses;
   std::array<std::vector<float>, 3> probabilities;  ///< along x, y and yaw

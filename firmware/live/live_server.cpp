@@ -116,7 +116,7 @@ class LiveServer::Impl {
 
   void draw_until(const std::stop_token& stop);
   void draw();
-  /// Sends trail and map to viewers that need them.
+  /// Sends trail and map to all viewers if one of them needs them.
   void send_scene(const MapIndex& map, const PoseSnapshot& pose);
 
   EventQueue events_;

@@ -13,11 +13,12 @@ namespace bevloc::firmware {
 /// Makes the pictures. One thread.
 class PictureMaker {
  public:
-  /// No picture is wider than this.
+  /// No picture is wider than this, except that of an MJPEG image of more than 8 times this width.
   static constexpr int kMaxWidth_px = 640;
 
   /// Returns a JPEG file with every n-th pixel, for the smallest n that makes the picture narrow
-  /// enough. Fails for a damaged or empty image.
+  /// enough. An MJPEG image that is too wide is reduced by 2, 4 or 8 instead, and its pixels are
+  /// means. Fails for a damaged or empty image.
   Result<std::string> jpeg_of(const ImageView& image);
 
  private:

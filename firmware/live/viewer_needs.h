@@ -1,4 +1,4 @@
-// Which viewers of the live page lack the trail or the map, and where the map is sent.
+// Whether a viewer of the live page lacks the trail or the map, and around where the map is sent.
 #pragma once
 
 #include <atomic>

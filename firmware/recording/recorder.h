@@ -123,7 +123,7 @@ class Recorder {
   HealthState state_ = HealthState::kInit;
   bool drops_logged_ = false;
   bool too_large_logged_ = false;
-  CauseLog causes_;  ///< of images that cannot be encoded
+  CauseLog causes_;  ///< why images could not be encoded
   RecorderCounters counters_;
 };
 

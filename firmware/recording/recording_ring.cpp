@@ -195,7 +195,7 @@ fs::path RecordingRing::next_name(uint64_t log_time_ns) {
 void RecordingRing::delete_old(const fs::path& newest, uint64_t log_time_ns) {
   const std::vector<Listed> files = list_recordings(newest);
   uint64_t total = 0;
-  uint64_t latest_ns = 0;  // of earlier runs
+  uint64_t latest_ns = 0;  // the latest change of a file of an earlier run
   for (const Listed& file : files) {
     total += file.bytes;
     const bool of_earlier_run = file.begin_ns + kLogSecond_ns <= begin_ns_;
@@ -287,7 +287,7 @@ Result<fs::path> RecordingRing::keep(uint64_t log_time_ns) {
   fs::create_directories(folder, error);  // somebody may have deleted it during the drive
   if (error) return refuse_folder(config_.directory, error.message());
   fs::path newest = folder / recent_.back().path.filename();
-  fs::path oldest = newest;  // of the last minute
+  fs::path oldest = newest;  // the oldest file of the last minute
   for (const RecentFile& file : recent_) {
     const bool is_newest = &file == &recent_.back();
     if (!is_newest && file.end_ns + covered < log_time_ns) continue;

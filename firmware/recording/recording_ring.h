@@ -84,9 +84,9 @@ class RecordingRing {
   std::optional<RecordingFile> file_;
   std::deque<RecentFile> recent_;  ///< the files that overlap the last minute, oldest first
   int number_ = 0;
-  uint64_t named_ns_ = 0;         ///< the time in the newest name
-  uint64_t most_bytes_ = 0;       ///< of file_
-  uint64_t bytes_of_closed_ = 0;  ///< of the files before file_
+  uint64_t named_ns_ = 0;         ///< the log time in the name of the newest file
+  uint64_t most_bytes_ = 0;       ///< with this size, file_ ends before its time
+  uint64_t bytes_of_closed_ = 0;  ///< bytes of the files of this run before file_
   bool clock_warned_ = false;
 };
 

@@ -11,7 +11,7 @@
 
 namespace bevloc::firmware {
 
-/// The state of the appliance, for log, LED, service status and progress line.
+/// The state of the appliance, for log, LED, service status, progress line and live server.
 struct ApplianceView {
   HealthState state = HealthState::kInit;
   WhyMask why;

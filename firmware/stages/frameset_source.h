@@ -32,7 +32,7 @@ struct NewestFrameset {
 /// future, or before the camera's earlier frames.
 struct DisplacedFrames {
   CameraMask cameras;
-  uint64_t stamp_jumps = 0;  ///< the most that a frame stated (drivers::Frame)
+  uint64_t stamp_jumps = 0;  ///< the largest drivers::Frame::stamp_jumps of their frames
 };
 
 /// Owns the synchronizer. Thread-bound: called from the vision thread. counters(), synchrony() and

@@ -138,13 +138,9 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
   report.unsynchronized = newest.unsynchronized;
   if (counters_.network_fault) {
     report.network_fault = true;
-    return report;
-  }
-  if (frameset.present.none()) {
+  } else if (frameset.present.none()) {
     ++counters_.refused;
-    return report;
-  }
-  if (const auto prior = priors_.at(frameset)) {
+  } else if (const auto prior = priors_.at(frameset)) {
     report.had_prior = true;
     report.prior = prior->map_from_vehicle;
     match(frameset, *prior, report);
@@ -152,6 +148,7 @@ VisionReport VisionStage::report_on(NewestFrameset newest) {
   } else {
     ++counters_.no_prior;
   }
+  if (!report.had_prior) forget_unused_images();
   return report;
 }
 
@@ -199,8 +196,8 @@ void VisionStage::match(const drivers::Frameset& frameset, const Prior& prior,
   }
   report.match = solution_;
   for (const VisionObserver& observer : observers_) {
-    observer({frameset, report, solution_, prior.range, localizer_.hypotheses(prior.range),
-              localizer_.map_raster(), perceived_mask_});
+    observer({frameset, report, prior.reference_from_exposure, solution_, prior.range,
+              localizer_.hypotheses(prior.range), localizer_.map_raster(), perceived_mask_});
   }
 }
 
@@ -243,6 +240,10 @@ void VisionStage::note_unused_images(const drivers::Frameset& frameset) {
   counters_.dark = shown(localizer_.with(ViewFault::kDark));
   counters_.blinded = shown(localizer_.with(ViewFault::kBlinded));
   counters_.dirty = shown(localizer_.with(ViewFault::kDirty));
+}
+
+void VisionStage::forget_unused_images() {
+  counters_.frozen = counters_.dark = counters_.blinded = counters_.dirty = 0;
 }
 
 }  // namespace bevloc::firmware

@@ -21,6 +21,8 @@ namespace bevloc::firmware {
 struct VisionSnapshot {
   const drivers::Frameset& frameset;
   const VisionReport& report;
+  /// The vehicle's pose at each exposure, in the vehicle frame at the prior (Prior).
+  const CameraMotions& reference_from_exposure;
   const SolverResult& solution;
   SearchRange range;
   const HypothesisGrid& hypotheses;     ///< the hypotheses of that range
@@ -50,6 +52,7 @@ struct VisionCounters {
   /// Their frames count as used.
   std::array<std::atomic<uint64_t>, kCameraCount> unreadable{};
   /// The cameras whose images are not used, each a CameraMask (FrozenCameraDetector, ViewMonitor).
+  /// There are none while nothing is matched, because then the images are not judged.
   std::atomic<unsigned> frozen{0};
   std::atomic<unsigned> dark{0};
   std::atomic<unsigned> blinded{0};
@@ -103,6 +106,8 @@ class VisionStage {
   void check_network_again(const drivers::Frameset& frameset, const Prior& prior);
   /// Counts the unused images of a frameset, and logs why an image could not be read.
   void note_unused_images(const drivers::Frameset& frameset);
+  /// Says of no camera that its image is not used, because nobody has judged the images.
+  void forget_unused_images();
 
   Localizer& localizer_;
   const int min_cameras_;
@@ -114,10 +119,12 @@ class VisionStage {
   const std::function<std::span<const float>()> perceived_mask_;
   VisionCounters counters_;
   std::array<CauseLog, kCameraCount> causes_;  ///< why images could not be read
-  CameraMask jumped_;          ///< cameras of the latest two framesets whose time stamps jumped
-  CameraMask latest_present_;  ///< cameras of the latest frameset
-  bool most_jumped_ = false;   ///< VisionReport::stamps_jumped of the latest report
-  uint64_t stamp_jumps_ = 0;   ///< VisionReport::stamp_jumps of the latest report
+  /// The cameras whose time stamps jumped: those of the latest two framesets, and those whose
+  /// frames are in no frameset (DisplacedFrames).
+  CameraMask jumped_;
+  CameraMask latest_present_;            ///< cameras of the latest frameset
+  bool most_jumped_ = false;             ///< VisionReport::stamps_jumped of the latest report
+  uint64_t stamp_jumps_ = 0;             ///< VisionReport::stamp_jumps of the latest report
   Time latest_displaced_ = Time::min();  ///< when displaced frames were reported last
   Time latest_check_ = Time::min();
   std::optional<Time> standing_since_;

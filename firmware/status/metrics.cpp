@@ -310,7 +310,8 @@ void add_recording(Families& families, const RecordingSnapshot& recording) {
   families.count("bevloc_recording_bytes_total", "Bytes that the recording wrote", recording.bytes);
   families.count("bevloc_recording_black_boxes_total", "How often the last minute was kept",
                  recording.black_boxes);
-  families.gauge("bevloc_recording_failed", "1 after the disk refused to take more",
+  families.gauge("bevloc_recording_failed",
+                 "1 if the recording could not begin, or the disk refused to take more",
                  recording.failed ? 1 : 0);
 }
 

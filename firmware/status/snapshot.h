@@ -19,7 +19,9 @@ struct CameraSnapshot {
   drivers::CameraCounters driver;
   drivers::SynchronizerCounters synchronizer;
   uint64_t unreadable = 0;  ///< images of a wrong size, or damaged
-  bool frozen = false;      ///< at the latest frameset, like the next four
+  /// At the latest frameset, like the next four. If it was not matched, this and the next three are
+  /// false, because nobody has judged the images.
+  bool frozen = false;
   bool dark = false;
   bool blinded = false;
   bool dirty = false;

@@ -41,7 +41,7 @@ const char* advice_for(Why why) {
       return "Check the trigger line and that every camera is in trigger mode; without a trigger, "
              "use compensate_motion with a wide tolerance_ms.";
     case Why::kOdometryMissing:
-      return "Check that wheel speed and yaw rate arrive on the bus and pass the E2E check.";
+      return "Check that wheel speed and yaw rate arrive, pass the E2E check and are not SNA.";
     case Why::kGnssMissing:
       return "Check the antenna, and that GNSS arrives (on the bus, or from gpsd: bevloc status).";
     case Why::kNoInitialPose:

@@ -107,7 +107,9 @@ void ViewLog::note_cameras(CameraMask before, CameraMask now, std::string_view w
     if (now[camera]) {
       spdlog::warn("camera {}: {}; {}", kCameraNames[camera], what, advice);
     } else {
-      spdlog::info("camera {}: no longer {}", kCameraNames[camera], what.substr(0, what.find(',')));
+      // Images are judged only when a frameset is matched.
+      spdlog::info("camera {}: no longer {}, or its images are not judged now",
+                   kCameraNames[camera], what.substr(0, what.find(',')));
     }
   }
 }

@@ -46,6 +46,29 @@ TEST(StatusPage, ShowsWhatCamerasAndBusLost) {
   EXPECT_THAT(page, HasSubstr("0 sent and 67 dropped, 0 received and 89 lost, 12 overruns"));
 }
 
+TEST(StatusPage, ShowsWhyInputsThatArriveAreNotUsed) {
+  Telemetry telemetry = running(HealthState::kAcquiring, Why::kOdometryMissing);
+  telemetry.snapshot.framesets.refused = 12;
+  telemetry.snapshot.vehicle_input.incomplete = 23;
+  telemetry.snapshot.vehicle_input.not_available = 34;
+  telemetry.snapshot.vehicle_input.contradicting_wheels = 45;
+  telemetry.snapshot.vehicle_input.slow_odometry = 56;
+  const std::string page = page_of(telemetry);
+  EXPECT_THAT(page, HasSubstr("odometry missing: Check that wheel speed and yaw rate arrive, pass "
+                              "the E2E check and are not SNA.\n"));
+  EXPECT_THAT(page, HasSubstr("0 without a prior, 12 with too few usable images\n"));
+  EXPECT_THAT(page,
+              HasSubstr("0 refused by E2E\n            23 epochs incomplete, 34 SNA or out of "
+                        "range, 45 implausible, 56 came too rarely\n"));
+}
+
+TEST(StatusPage, ShowsNoLatencyBeforeOneWasMeasured) {
+  Telemetry telemetry = running(HealthState::kAcquiring);
+  EXPECT_THAT(page_of(telemetry), HasSubstr("latency - ms median, - ms for 99 %\n"));
+  telemetry.snapshot.estimation.latency.in_range[0] = 1;
+  EXPECT_THAT(page_of(telemetry), HasSubstr("latency 5 ms median, 10 ms for 99 %\n"));
+}
+
 TEST(StatusPage, ShowsWhatTheAuthenticationRefused) {
   Telemetry telemetry = running(HealthState::kTracking);
   EXPECT_FALSE(status_json(telemetry, {}, {}).contains("authentication"));

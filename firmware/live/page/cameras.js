@@ -16,7 +16,8 @@ export function makeCameras() {
     const caption = element("figcaption", title);
     figure.append(image, canvas, caption);
     byId("pictures").append(figure);
-    shown.cameras[name] = {figure, image, canvas, caption, title, data: null, at_ms: 0};
+    shown.cameras[name] =
+      {figure, image, canvas, caption, title, data: null, at_ms: 0, number: 0};
   }
 }
 
@@ -52,7 +53,8 @@ export function drawCameras() {
 export function onCamera(data) {
   const camera = shown.cameras[data.camera];
   if (!camera) return;
-  camera.at_ms = performance.now();
+  camera.at_ms = shown.pictureAt_ms = performance.now();
+  camera.number = ++shown.pictures;
   camera.figure.style.aspectRatio = data.width_px + " / " + data.height_px;
   camera.image.onload = () => {
     camera.image.hidden = false;

@@ -1,4 +1,4 @@
-// The live page: draws what the server sends at /events. docs/live.md describes the events.
+// The live page: draws the events that the server sends at /events (live_events.h).
 import {drawCameras, makeCameras, onCamera} from "./cameras.js";
 import {byId, setText} from "./drawing.js";
 import {beginConnection} from "./lateness.js";
@@ -8,7 +8,11 @@ import {onStatus, showOutdated} from "./status.js";
 import {drawTrail} from "./trail.js";
 
 const STALE_MS = 3000;
+const DEAD_MS = 10000;  // after a silence as long as this, nobody is at the other end
+const PASSED_OVER = 10;  // pictures of the others in two rounds: they come in turn
 const NO_ANSWER = "bevlocd does not answer.";
+let source = null;
+let connect_ms = 0;  // when the present connection was begun
 let lastEvent_ms = 0;
 let refusal = NO_ANSWER;  // why there are no events
 
@@ -18,11 +22,14 @@ function drawAll() {
   drawTrail();
 }
 
-/// Shows pictures and matches in grey when they are older than STALE_MS.
+/// Shows pictures and matches in grey when they are older than STALE_MS. A camera whose turn has not
+/// come since then is not to blame, so its picture stays.
 function noteAge() {
   const isOld = (at_ms) => performance.now() - at_ms > STALE_MS;
+  const isPassedOver = (camera) => shown.pictures - camera.number > PASSED_OVER;
   for (const camera of Object.values(shown.cameras)) {
-    const old = camera.data !== null && isOld(camera.at_ms);
+    const old = camera.data !== null && isOld(camera.at_ms) &&
+      (isOld(shown.pictureAt_ms) || isPassedOver(camera));
     camera.figure.classList.toggle("old", old);
     setText(camera.caption, camera.title + (old ? ": no new picture" : ""));
   }
@@ -35,6 +42,17 @@ export function noteSilence() {
   if (performance.now() - lastEvent_ms > STALE_MS) {
     showOutdated("NO DATA", refusal + " The page tries again by itself.");
   }
+  endDeadConnection();
+}
+
+/// A machine that loses its power does not close its connections, so the browser waits on. When the
+/// connection is CLOSED, the browser has noticed it, and the page tries again.
+function endDeadConnection() {
+  const silence_ms = performance.now() - Math.max(lastEvent_ms, connect_ms);
+  if (source.readyState === EventSource.CLOSED || silence_ms <= DEAD_MS) return;
+  source.close();
+  refusal = NO_ANSWER;
+  connect();
 }
 
 /// The browser does not tell why the request for events was refused, so this asks with HEAD.
@@ -46,7 +64,8 @@ function noteRefusal() {
 }
 
 function connect() {
-  const source = new EventSource("/events");
+  source = new EventSource("/events");
+  connect_ms = performance.now();
   const on = (name, handle) => source.addEventListener(name, (event) => {
     lastEvent_ms = performance.now();
     refusal = NO_ANSWER;

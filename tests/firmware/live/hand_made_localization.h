@@ -42,7 +42,8 @@ struct HandMadeLocalization {
   }
 
   VisionSnapshot snapshot() {
-    return {frameset, report, solution, SearchRange::kTracking, hypotheses, {}, perceived_mask};
+    return {frameset,   report, motions,       solution, SearchRange::kTracking,
+            hypotheses, {},     perceived_mask};
   }
 
   static constexpr int kWidth_px = 64;
@@ -52,6 +53,7 @@ struct HandMadeLocalization {
       drivers::FramePool::create(kCameraCount, kWidth_px, kHeight_px);
   drivers::Frameset frameset;
   VisionReport report;
+  CameraMotions motions{};
   SolverResult solution;
   HypothesisGrid hypotheses{{0.4, 0.2}, {0.4, 0.2}, {radians(0.4), radians(0.2)}};
   std::vector<float> mask = std::vector<float>(kRasterChannels * 400 * 200, -5.0F);

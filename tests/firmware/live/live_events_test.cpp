@@ -84,6 +84,30 @@ TEST_F(LiveEventsTest, ACameraHasItsPictureAndTheMapInPixels) {
   EXPECT_NE(data["prior"], data["corrected"]);
 }
 
+/// A camera that exposed 1 m later shows the map as from 1 m farther on.
+TEST_F(LiveEventsTest, ACameraHasTheMapAsAtItsExposure) {
+  map_.elements.push_back(
+      {ElementClass::kLaneDivider, Appearance::kUnknown, {{15.0, -3.0}, {15.0, 3.0}}});
+  const MapIndex index(map_);
+  PictureMaker pictures;
+  const auto data_at = [&](const Se2& prior, const Se2& reference_from_exposure) {
+    LiveSample sample = sample_;
+    sample.prior = prior;
+    sample.reference_from_exposure = reference_from_exposure;
+    return data_of(camera_event(index, made_.rig, sample, pictures), "camera");
+  };
+  sample_.match.correction = {0.5, 0.0, 0.0};
+  const auto moved = data_at({5.0, 1.0, 0.0}, {1.0, 0.0, 0.0});
+  const auto farther = data_at({6.0, 1.0, 0.0}, {});
+  EXPECT_EQ(moved["prior"], farther["prior"]);
+  EXPECT_EQ(moved["corrected"], farther["corrected"]);
+  EXPECT_NE(moved["prior"], data_at({5.0, 1.0, 0.0}, {})["prior"]);
+  // The vehicle drives from the corrected pose, in the direction that it has there.
+  sample_.match.correction = {0.0, 0.0, radians(90.0)};
+  EXPECT_EQ(data_at({5.0, 1.0, radians(-90.0)}, {1.0, 0.0, 0.0})["corrected"],
+            data_at({6.0, 1.0, radians(-90.0)}, {})["corrected"]);
+}
+
 TEST_F(LiveEventsTest, ADamagedImageGivesNoEvent) {
   const MapIndex index(map_);
   sample_.image.format = PixelFormat::kMjpeg;

@@ -23,6 +23,7 @@ class LiveFeedTest : public testing::Test {
       has_mask_ = sample.has_mask;
       if (has_image_) grey_ = sample.image.planes[0].data[0];
       prior_ = sample.prior;
+      moved_m_ = sample.reference_from_exposure.x_m;
       likeliest_ = sample.probabilities[0][2];
     });
   }
@@ -34,6 +35,7 @@ class LiveFeedTest : public testing::Test {
   bool has_mask_ = false;
   int grey_ = 0;
   Se2 prior_;
+  double moved_m_ = 0.0;
   float likeliest_ = 0.0F;
 };
 
@@ -57,12 +59,14 @@ TEST_F(LiveFeedTest, AFirstViewerGetsNothingThatWasCopiedForEarlierOnes) {
 }
 
 TEST_F(LiveFeedTest, CopiesOneCameraAfterTheOther) {
+  for (int camera = 0; camera < kCameraCount; ++camera) made_.motions[camera].x_m = 0.1 * camera;
   feed_.set_viewers(1);
   for (int i = 0; i < 2 * kCameraCount; ++i) {
     ASSERT_TRUE(offer_at(1000 + 100 * i));
     EXPECT_EQ(camera_, i % kCameraCount);
     ASSERT_TRUE(has_image_);
     EXPECT_EQ(grey_, 10 * camera_ + 10);
+    EXPECT_EQ(moved_m_, 0.1 * camera_);
   }
   EXPECT_EQ(prior_.x_m, 5.0);
   EXPECT_EQ(likeliest_, 0.5F);

@@ -21,8 +21,28 @@ PIXEL = base64.b64encode(
 ).decode()
 
 
+class Server(http.server.ThreadingHTTPServer):
+    """Serves the page. Each connection to /events gets the next answer, and then silence."""
+
+    def __init__(self) -> None:
+        handler = functools.partial(Files, directory=str(PAGE))
+        super().__init__(("127.0.0.1", 0), handler)
+        self.answers: list[bytes] = []
+        self.asked = threading.Semaphore(0)
+        self.ended = threading.Event()
+
+
 class Files(http.server.SimpleHTTPRequestHandler):
-    """Serves the files of the page, but no /events. The test tells the page what to show."""
+    """Serves the files of the page. Without an answer for /events, that is not found."""
+
+    def do_GET(self) -> None:
+        assert isinstance(self.server, Server)
+        if self.path != "/events" or not self.server.answers:
+            super().do_GET()
+            return
+        self.wfile.write(self.server.answers.pop(0))
+        self.server.asked.release()
+        self.server.ended.wait()
 
     def do_HEAD(self) -> None:
         self.send_response(503)
@@ -56,9 +76,16 @@ def status(**changes: Any) -> dict[str, Any]:
         "rate_hz": 10.0,
         "latency_ms": {"median": 40.0, "p99": 50.0, "count": 1},
         "cameras": [{"name": name, **camera} for name in CAMERAS],
-        "framesets": {"skipped": 0, "without_prior": 0, "spread_ms": 0.1},
+        "framesets": {"skipped": 0, "without_prior": 0, "refused": 0, "spread_ms": 0.1},
         "tracker": {"corrections": {"accepted": 1}},
-        "vehicle": {"e2e_refused": 0, "frames_lost": 0},
+        "vehicle": {
+            "e2e_refused": 0,
+            "frames_lost": 0,
+            "incomplete": 0,
+            "not_available": 0,
+            "odometry_refused": 0,
+            "slow_odometry": 0,
+        },
         "can": {
             "condition": "active",
             "sent": 1,
@@ -141,14 +168,14 @@ def contrast(one: str, other: str) -> float:
 @unittest.skipUnless(browser.program(), "no Chromium here (script/packages-web.txt)")
 class PageTest(unittest.TestCase):
     def setUp(self) -> None:
-        handler = functools.partial(Files, directory=str(PAGE))
-        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
-        self.addCleanup(server.server_close)
-        self.addCleanup(server.shutdown)
-        threading.Thread(target=server.serve_forever, daemon=True).start()
+        self.server = Server()
+        self.addCleanup(self.server.server_close)
+        self.addCleanup(self.server.shutdown)
+        self.addCleanup(self.server.ended.set)
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
         self.page = browser.Browser().__enter__()
         self.addCleanup(self.page.__exit__, None, None, None)
-        self.page.open(f"http://127.0.0.1:{server.server_port}/page.html")
+        self.page.open(f"http://127.0.0.1:{self.server.server_port}/page.html")
         self.page.wait_for("document.querySelectorAll('figure').length === 6")
         self.page.evaluate(STILL)
 
@@ -191,6 +218,34 @@ class PageTest(unittest.TestCase):
         self.tell("Match", MATCH)
         self.call("page", "noteSilence")
         self.assertFalse(self.has("old", "#bev"))
+
+    def test_below_two_framesets_per_second_a_picture_waits_for_its_turn(self) -> None:
+        def show(camera: str, at_s: float) -> None:
+            self.page.evaluate(f"performance.now = () => {1000 * at_s}")
+            self.tell("Camera", {**PICTURE, "camera": camera})
+            self.call("page", "noteSilence")
+
+        shown = "document.querySelectorAll('figure img:not([hidden])').length"
+        for at_s, camera in enumerate(CAMERAS):
+            show(camera, at_s)
+            self.page.wait_for(f"{shown} === {at_s + 1}")
+        first = "figure:nth-child(1)"
+        self.assertFalse(self.has("old", first), "its turn comes now")
+        for at_s in range(6, 12):
+            show("back_right", at_s)
+        self.assertTrue(self.has("old", first), "its turn has come twice")
+        self.assertFalse(self.has("old", "figure:nth-child(6)"))
+
+    def test_it_ends_a_connection_that_is_open_and_silent(self) -> None:
+        head = b"HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n\r\n"
+        events = [f"event: status\ndata: {json.dumps(status(version=v))}\n\n" for v in ("2", "3")]
+        # The first answer does not even begin.
+        self.server.answers = [b"", *(head + event.encode() for event in events)]
+        self.assertTrue(self.server.asked.acquire(timeout=120))
+        for version, now_s in (("2", 60), ("3", 120)):
+            self.page.evaluate(f"performance.now = () => {1000 * now_s}")
+            shown = f"document.getElementById('version').textContent === 'bevloc {version}'"
+            self.page.wait_for(shown)
 
     def test_it_clears_the_facts_in_standby(self) -> None:
         self.tell("Status", status())
@@ -251,6 +306,21 @@ class PageTest(unittest.TestCase):
         self.assertEqual(
             self.page.evaluate(row), ["front", "yes", "0.0", "0", "0", "23", "45", "none"]
         )
+
+    def test_it_shows_why_inputs_that_arrive_are_not_used(self) -> None:
+        bad = status()
+        bad["framesets"]["refused"] = 12
+        bad["vehicle"].update(incomplete=23, not_available=34)
+        bad["vehicle"].update(odometry_refused=45, slow_odometry=56)
+        self.tell("Status", bad)
+        for pair in (
+            "framesets with too few images12",
+            "vehicle epochs incomplete23",
+            "vehicle epochs SNA or out of range34",
+            "odometry implausible45",
+            "odometry that came too rarely56",
+        ):
+            self.assertIn(pair, self.text("pairs"))
 
     def test_it_writes_only_what_differs(self) -> None:
         why = [{"reason": "GNSS missing", "do": "Check the antenna."}]

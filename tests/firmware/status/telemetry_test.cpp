@@ -1,6 +1,7 @@
 // Tests health check, metrics, status and latency histogram.
 #include "firmware/status/telemetry.h"
 
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -21,6 +22,16 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::HasSubstr;
 using testing::Not;
+
+/// The telemetry of an appliance that has every device.
+Telemetry with_every_device() {
+  Telemetry telemetry = running(HealthState::kTracking, Why::kMatchUncertain);
+  telemetry.snapshot.authentication.emplace();
+  telemetry.snapshot.trigger.emplace();
+  telemetry.snapshot.gnss.emplace();
+  telemetry.snapshot.recording.emplace();
+  return telemetry;
+}
 
 std::string metrics(const Telemetry& telemetry) {
   return metrics_text(telemetry, {1e6, 2.5}, {});
@@ -60,6 +71,16 @@ TEST(HealthCheck, AStartIsGoodUntilAnInputIsMissing) {
   EXPECT_TRUE(
       check_health(running(HealthState::kAcquiring, Why::kMatchUncertain), Duration{}).good);
   EXPECT_FALSE(check_health(running(HealthState::kInit, Why::kOdometryMissing), Duration{}).good);
+}
+
+TEST(HealthCheck, IsBadBeforeThePoseIsValidIfSomebodyHasToHelp) {
+  for (const Why reason : {Why::kCameraMissing, Why::kCamerasUnsynchronized, Why::kGnssMissing,
+                           Why::kOdometryImplausible, Why::kForeignSender, Why::kCalibrationFault,
+                           Why::kOutsideMap, Why::kMapFault}) {
+    for (const HealthState state : {HealthState::kInit, HealthState::kAcquiring}) {
+      EXPECT_FALSE(check_health(running(state, reason), Duration{}).good) << words_of(reason);
+    }
+  }
 }
 
 TEST(HealthCheck, IsBadWhileALostPoseIsNotFoundAgain) {
@@ -235,12 +256,7 @@ TEST(Metrics, CountsEachLossOfAuthentication) {
 }
 
 TEST(Metrics, NoSeriesOccursTwice) {
-  Telemetry telemetry = running(HealthState::kTracking);
-  telemetry.snapshot.authentication.emplace();
-  telemetry.snapshot.trigger.emplace();
-  telemetry.snapshot.gnss.emplace();
-  telemetry.snapshot.recording.emplace();
-  std::istringstream lines(metrics(telemetry));
+  std::istringstream lines(metrics(with_every_device()));
   std::set<std::string> seen;
   for (std::string line; std::getline(lines, line);) {
     EXPECT_TRUE(seen.insert(line.substr(0, line.rfind(' '))).second || line.starts_with('#'))
@@ -259,20 +275,10 @@ std::set<std::string> metric_names_in(const std::string& text) {
   return names;
 }
 
-/// The metrics of an appliance that has every device.
-std::string all_metrics() {
-  Telemetry telemetry = running(HealthState::kTracking);
-  telemetry.snapshot.authentication.emplace();
-  telemetry.snapshot.trigger.emplace();
-  telemetry.snapshot.gnss.emplace();
-  telemetry.snapshot.recording.emplace();
-  return metrics(telemetry);
-}
-
 TEST(Metrics, TheDashboardNamesOnlyExistingOnes) {
   const auto dashboard =
       nlohmann::json::parse(test::read_text(BEVLOC_SOURCE_DIR "/docs/grafana/bevloc.json"));
-  const std::set<std::string> existing = metric_names_in(all_metrics());
+  const std::set<std::string> existing = metric_names_in(metrics(with_every_device()));
   size_t queries = 0;
   for (const auto& panel : dashboard["panels"]) {
     for (const auto& target : panel.value("targets", nlohmann::json::array())) {
@@ -288,7 +294,7 @@ TEST(Metrics, TheDashboardNamesOnlyExistingOnes) {
 TEST(Metrics, ThePageListsEachOne) {
   const std::set<std::string> listed =
       metric_names_in(test::read_text(BEVLOC_SOURCE_DIR "/docs/live.md"));
-  std::istringstream lines(all_metrics());
+  std::istringstream lines(metrics(with_every_device()));
   int types = 0;
   for (std::string word, name; lines >> word;) {
     if (word != "TYPE") continue;
@@ -297,6 +303,62 @@ TEST(Metrics, ThePageListsEachOne) {
     EXPECT_TRUE(listed.contains(name)) << name;
   }
   EXPECT_GT(types, 20);
+}
+
+using KeysByName = std::map<std::string, std::set<std::string>>;
+
+/// The names of all keys inside a value.
+std::set<std::string> keys_in(const nlohmann::json& value) {
+  std::set<std::string> keys;
+  if (!value.is_structured()) return keys;
+  for (const auto& [key, inner] : value.items()) {
+    if (value.is_object()) keys.insert(key);
+    keys.merge(keys_in(inner));
+  }
+  return keys;
+}
+
+/// The words that a cell of a table marks as code.
+std::set<std::string> code_in(const std::string& cell) {
+  const std::regex code("`([^`]+)`");
+  std::set<std::string> words;
+  for (std::sregex_iterator match(cell.begin(), cell.end(), code), end; match != end; ++match) {
+    words.insert(match->str(1));
+  }
+  return words;
+}
+
+/// The table of docs/live.md: the keys of the status, each with the keys in it.
+KeysByName listed_keys() {
+  std::istringstream lines(test::read_text(BEVLOC_SOURCE_DIR "/docs/live.md"));
+  std::string line;
+  while (std::getline(lines, line) && line != "### Keys of `/status.json`") {
+  }
+  KeysByName listed;
+  while (std::getline(lines, line) && !line.starts_with('#')) {
+    if (!line.starts_with("| `")) continue;
+    const size_t second = line.find('|', 1);
+    const size_t third = line.find('|', second + 1);
+    const std::set<std::string> inside = code_in(line.substr(second, third - second));
+    for (const std::string& key : code_in(line.substr(0, second))) listed[key] = inside;
+  }
+  return listed;
+}
+
+TEST(StatusJson, ThePageListsEachKey) {
+  const nlohmann::json status = status_json(with_every_device(), {}, Duration{});
+  KeysByName sent;
+  for (const auto& [key, value] : status.items()) sent[key] = keys_in(value);
+  EXPECT_EQ(listed_keys(), sent);
+}
+
+TEST(StatusJson, HasOnlyTheFirstFiveKeysInStandby) {
+  Telemetry standby;
+  standby.phase = Phase::kStandby;
+  std::set<std::string> keys;
+  const nlohmann::json status = status_json(standby, {}, Duration{});
+  for (const auto& [key, value] : status.items()) keys.insert(key);
+  EXPECT_EQ(keys, (std::set<std::string>{"version", "phase", "healthy", "health", "valid"}));
 }
 
 TEST(StatusJson, ShowsReasonsWithAdvice) {
