@@ -10,17 +10,16 @@ learned (Wortsman et al., "Robust fine-tuning of zero-shot models", CVPR 2022).
 from __future__ import annotations
 
 import argparse
-from dataclasses import asdict
 from pathlib import Path
 
 import torch
 
-from training.checkpoint import state_of_weights
+from training.checkpoint import new_checkpoint, state_of_weights, write_checkpoint
 from training.config import TrainingConfig
 from training.errors import run_program
-from training.export_onnx import stated_ranges
 from training.models.config import network_config
 from training.models.network import BevNetwork
+from training.rig_ranges import stated_ranges, to_store
 from training.start_weights import load_model_file
 
 
@@ -54,15 +53,15 @@ def main() -> None:
         network_config(arguments.network, arguments.view)
     except ValueError as error:
         parser.error(str(error))
+    out = new_checkpoint(arguments.run)
     config = TrainingConfig(run=arguments.run, network=arguments.network, view=arguments.view)
     first, second = (load_float_model(path, config) for path in (arguments.first, arguments.second))
     blend(first, second, arguments.share)
     # The samples of the two runs are unknown here, and the ranges of their cameras come from these.
     ranges = [stated_ranges(path) for path in (arguments.first, arguments.second)]
-    stored = {"rig_ranges": [asdict(found) for found in ranges if found]}
+    stored = to_store([found for found in ranges if found])
     arguments.run.mkdir(parents=True, exist_ok=True)
-    out = arguments.run / "checkpoint.pt"
-    torch.save(state_of_weights(first.state_dict(), config.as_dict() | stored), out)
+    write_checkpoint(state_of_weights(first.state_dict(), config.as_dict() | stored), out)
     print(out)
 
 

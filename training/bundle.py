@@ -28,6 +28,7 @@ from training.errors import TrainingError, run_program
 from training.models.config import network_config
 from training.models.network import BevNetwork
 from training.options import parse_config
+from training.rig_ranges import ranges_of_weights, to_store
 from training.run_table import TABLES
 from training.sampler_process import BUNDLED, LOADER, PROGRAM, sampler_program
 from training.sources import training_stream
@@ -118,7 +119,8 @@ def write_start_weights(config: TrainingConfig, out: Path) -> None:
     bundle lacks."""
     net = BevNetwork(network_config(config.network, config.view))
     start_with(net, Path(config.init), lambda: measuring_batches(config, training_stream))
-    torch.save(state_of_weights(net.state_dict(), config.as_dict()), out)
+    stored = to_store(ranges_of_weights(Path(config.init)))
+    torch.save(state_of_weights(net.state_dict(), config.as_dict() | stored), out)
 
 
 def options_of_run(run: Path) -> list[str]:
@@ -135,11 +137,26 @@ def options_of_run(run: Path) -> list[str]:
     return options
 
 
-def checked(options: list[str], arguments: argparse.Namespace) -> TrainingConfig:
+def photos_of_run(run: Path) -> Path | None:
+    """The folder of photographs with which a run was started; None if it had none. BundleError if
+    this machine does not have it."""
+    path = run / "checkpoint.pt"
+    photos = read_checkpoint(path)["config"].get("photos")
+    if not photos:
+        return None
+    if not Path(photos).is_dir():
+        raise BundleError(
+            f"{path}: found a run with the photographs '{photos}', wanted this folder; name that "
+            "of script/photos with --photos"
+        )
+    return Path(photos)
+
+
+def checked(options: list[str], init: Path | None, photos: Path | None) -> TrainingConfig:
     """The configuration of the bundle's run. Wrong options end the program. Options without a
     budget are accepted, because `train` may get one. BundleError if the run needs what a bundle
     does not hold, or if a file is missing."""
-    given = [*options, "--init", str(arguments.init or ""), "--photos", str(arguments.photos or "")]
+    given = [*options, "--init", str(init or ""), "--photos", str(photos or "")]
     if not has_budget(options):
         given += ["--samples", "8"]
     config = parse_config(given, "options of the bundle's run")
@@ -181,31 +198,32 @@ def size_of(folder: Path) -> int:
 def make(arguments: argparse.Namespace, options: list[str], out: Path) -> None:
     """Writes the bundle into `out`, which must not exist. BundleError if it is too large. An error
     leaves no folder."""
+    photos = arguments.photos
     if arguments.run is not None:
         stored = options_of_run(arguments.run)
         options = [*(without_budget(stored) if has_budget(options) else stored), *options]
-    config = checked(options, arguments)
+        photos = photos or photos_of_run(arguments.run)
+    config = checked(options, arguments.init, photos)
     net = BevNetwork(network_config(config.network, config.view))
     weights = sum(parameter.numel() for parameter in net.parameters())
     if _BYTES_PER_WEIGHT * weights > CHECKPOINT_BYTES and not config.compact:
         options = [*options, "--compact"]
     out.mkdir(parents=True)
     try:
-        fill(arguments, config, options, out)
+        fill(arguments.run, config, options, out)
     except BaseException:
         shutil.rmtree(out)
         raise
 
 
-def fill(
-    arguments: argparse.Namespace, config: TrainingConfig, options: list[str], out: Path
-) -> None:
-    """Writes the files of the bundle into the empty folder `out`."""
+def fill(run: Path | None, config: TrainingConfig, options: list[str], out: Path) -> None:
+    """Writes the files of the bundle into the empty folder `out`. `run`: the run that the bundle
+    continues, if any."""
     copy_python(out)
     copy_sampler(out / BUNDLED)
-    if arguments.photos is not None:
-        shutil.copytree(arguments.photos, out / "photos")
-    copy_weights(config, arguments.run, out)
+    if config.photos:
+        shutil.copytree(config.photos, out / "photos")
+    copy_weights(config, run, out)
     (out / "options.json").write_text(json.dumps(options) + "\n")
     if (size := size_of(out)) > LIMIT_BYTES:
         raise BundleError(
@@ -221,7 +239,9 @@ def main() -> None:
     start = parser.add_mutually_exclusive_group()
     start.add_argument("--init", type=Path, help="checkpoint or float model file to start with")
     start.add_argument("--run", type=Path, help="folder of a run that the bundle continues")
-    parser.add_argument("--photos", type=Path, help="folder of script/photos")
+    parser.add_argument(
+        "--photos", type=Path, help="folder of script/photos; default: that of --run"
+    )
     arguments, options = parser.parse_known_args()
     out: Path = arguments.out
     archive = out.name.endswith(ARCHIVE)

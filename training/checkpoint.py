@@ -1,4 +1,4 @@
-"""Reads checkpoints; refuses unreadable and unsuitable ones with a one-line error.
+"""Reads and writes checkpoints; refuses unreadable and unsuitable ones with a one-line error.
 
     /usr/bin/python3 -m training.checkpoint training/runs/nano/checkpoint.pt
 
@@ -14,7 +14,7 @@ from typing import Any
 import torch
 
 from training.compact import unpack
-from training.errors import CheckpointError, run_program
+from training.errors import CheckpointError, TrainingError, run_program
 from training.models.config import ModelConfig, network_config
 from training.models.network import BevNetwork
 
@@ -44,8 +44,23 @@ def state_of_weights(
 ) -> dict[str, Any]:
     """The state of a checkpoint with finished weights, which are also its averaged weights.
     `config`: what TrainingConfig.as_dict() gives; an export measures ranges and scales on samples
-    with these options. training.blend adds `rig_ranges` (stored_ranges() in export_onnx.py)."""
+    with these options. `rig_ranges` is added where it is known (rig_ranges.py)."""
     return {"model": weights, "ema": weights, "samples": samples, "config": config}
+
+
+def new_checkpoint(run: Path) -> Path:
+    """The file for the checkpoint of a new run. TrainingError if the folder holds a run."""
+    path = run / "checkpoint.pt"
+    if path.exists():
+        raise TrainingError(f"{path}: found a run, wanted another folder for --run")
+    return path
+
+
+def write_checkpoint(state: dict[str, Any], path: Path) -> None:
+    """Replaces a checkpoint, which stays as it was if the process is killed or the disk is full."""
+    partial = path.with_suffix(".partial")
+    torch.save(state, partial)
+    partial.replace(path)
 
 
 def nuisances_of(path: Path) -> str:

@@ -47,6 +47,11 @@ class Batch:
         names = vars(batches[0])
         return Batch(**{name: torch.cat([vars(b)[name] for b in batches]) for name in names})
 
+    def with_cameras(self) -> Batch:
+        """Those of the samples that have a camera (DriveOptions.blank_bad)."""
+        seen = self.camera_mask > 0
+        return Batch(**{name: tensor[seen] for name, tensor in vars(self).items()})
+
     def __len__(self) -> int:
         return self.images.shape[0]
 
@@ -163,9 +168,10 @@ class DriveStream(ProcessStream):
         threads: int,
         drop_camera_probability: float,
         share: Share = WHOLE,
+        blank_bad: bool = False,
     ) -> None:
         """`part`: training, calibration or held-back. `first_sample` counts the samples of all
-        processes and is a multiple of their number."""
+        processes and is a multiple of their number. `blank_bad`: as of DriveOptions."""
         assert first_sample % share.count == 0
         first_sample //= share.count
         options = [
@@ -178,6 +184,7 @@ class DriveStream(ProcessStream):
                 stride=share.count * threads,
                 part=part,
                 drop_camera_probability=drop_camera_probability,
+                blank_bad=blank_bad,
             )
             for program in range(threads)
         ]

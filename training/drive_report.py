@@ -21,12 +21,10 @@ from training.option_types import positive, writable
 from training.options import add_drive_options, drives_of
 from training.runtime import NativeNetwork
 from training.sampler_process import Drives
-from training.sources import drive_batches
+from training.sources import FEWEST_SAMPLES, drive_batches
 
 UNITS = ("m", "m", "degrees")
 NAMES = ("longitudinal", "lateral", "yaw")
-# The figures of fewer samples are not exact enough to be compared.
-FEWEST_SAMPLES = 24
 
 
 def figures_table(before: dict[str, float], after: dict[str, float]) -> str:
@@ -44,6 +42,21 @@ def figures_table(before: dict[str, float], after: dict[str, float]) -> str:
     for name in CLASSES:
         add(f"IoU of {name}", f"iou_{name}")
     return table(("figure", "before", "after"), rows)
+
+
+def remarks(drives: Drives, used: int) -> list[str]:
+    """What limits the trust in the figures of so many samples, in lines."""
+    lines = []
+    if used < FEWEST_SAMPLES:
+        lines += [f"Fewer than {FEWEST_SAMPLES} samples: do not trust these figures.", ""]
+    if drives.reference == "own":
+        lines += [
+            "The reference is what the appliance sent itself. So the errors are too small where"
+            " both models err as the appliance did, and the sigmas of the new model are too small"
+            " by the same errors.",
+            "",
+        ]
+    return lines
 
 
 def report(
@@ -67,15 +80,7 @@ def report(
         "",
         figures_table(metrics[0], metrics[1]),
     ]
-    if used < FEWEST_SAMPLES:
-        lines += [f"Fewer than {FEWEST_SAMPLES} samples: do not trust these figures.", ""]
-    if drives.reference == "own":
-        lines += [
-            "The reference is what the appliance sent itself. So the errors are too small where"
-            " both models err as the appliance did.",
-            "",
-        ]
-    return "\n".join(lines)
+    return "\n".join(lines + remarks(drives, used))
 
 
 def main() -> None:

@@ -21,6 +21,7 @@ import torch
 from torch import Tensor
 
 from training.checkpoint import load_network, read_checkpoint
+from training.config import TrainingConfig
 from training.data import Batch
 from training.errors import run_program
 from training.losses import intersection_over_union, pose_losses
@@ -149,6 +150,12 @@ def evaluate_native(network: NativeNetwork, batches: list[Batch]) -> dict[str, f
     return evaluate(network, solvers, batches, torch.device("cpu"))
 
 
+def trained_line_width_cells(checkpoint: Path) -> float:
+    """The width of the map's lines with which a run was trained."""
+    config = read_checkpoint(checkpoint)["config"]
+    return config.get("line_width_cells", TrainingConfig.line_width_cells)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("checkpoint", type=Path)
@@ -159,12 +166,12 @@ def main() -> None:
     parser.add_argument("--nuscenes", help="folder of the data set that replaces the simulator")
     parser.add_argument("--nuscenes-version", default="", help="v1.0-*, if there are several")
     parser.add_argument("--scenes", default="", help="file with scene names; default: all scenes")
-    parser.add_argument("--line-width-cells", type=above_zero, default=5.0)
+    parser.add_argument("--line-width-cells", type=above_zero, help="default: as in training")
     arguments = parser.parse_args()
     if arguments.nuscenes and arguments.write:
         wanted = "wanted the simulator's scenes, which the model card is about"
         parser.error(f"--write: found --nuscenes too, {wanted}")
-    for option in ("scenes", "nuscenes_version"):
+    for option in ("scenes", "nuscenes_version", "line_width_cells"):
         if getattr(arguments, option) and not arguments.nuscenes:
             name = "--" + option.replace("_", "-")
             parser.error(f"{name}: found no --nuscenes, wanted the folder of the data set")
@@ -176,7 +183,7 @@ def main() -> None:
         every = nuscenes_batches(
             arguments.nuscenes,
             arguments.scenes,
-            arguments.line_width_cells,
+            arguments.line_width_cells or trained_line_width_cells(arguments.checkpoint),
             arguments.threads,
             arguments.nuscenes_version,
         )

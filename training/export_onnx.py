@@ -18,7 +18,6 @@ from __future__ import annotations
 import argparse
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,9 +27,9 @@ import yaml
 from onnx import TensorProto, helper
 
 from training.checkpoint import load_network, nuisances_of, read_checkpoint
-from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED
+from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED, TrainingConfig
 from training.data import Batch, SamplerStream
-from training.errors import CheckpointError, TrainingError, run_program
+from training.errors import TrainingError, run_program
 from training.fit_scales import ResultScales, fit_scales, fit_score_scale, fit_sigma_scale
 from training.graph import FoldedConv, Walk, check_exportable, folded_convolutions
 from training.model import (
@@ -45,45 +44,21 @@ from training.model import (
 from training.models.network import BevNetwork
 from training.onnx_graph import MASK_OUTPUT, FloatOnnxBackend, Int8OnnxBackend
 from training.option_types import positive
-from training.options import add_drive_options, drives_of
+from training.options import DRIVE_FIELDS, add_drive_options, drives_of, option_name
 from training.quantize import Quantization, input_scales, int8_inference, quantize
+from training.rig_ranges import RANGE_KEYS, RigRanges, drawn_ranges, stored_ranges
 from training.runtime import NativeNetwork, NativeSolver
 from training.sampler_process import DriveFacts, Drives
-from training.sources import drive_batches
+from training.sources import calibration_set
 
 OPSET, IR_VERSION = 13, 8
 QUANTIZATION_FILE = "quantization.pt"
 SOLVERS_FILE = "solvers.pt"
 # The simulator's cameras vary around this rig.
 TRAINED_RIG = Path(__file__).parent.parent / "config/rig_demo.yaml"
-# The appliance corrects the calibration that it records, so the rig that it is given differs a
-# little from that of its recordings.
-RECORDED_MARGIN = 1.05
 SHIPPED_SOLVER = "banded+refine"  # config/demo.yaml
 # Training scenes that no run reaches.
 CALIBRATION_SEED = FIRST_TRAINING_SEED + CALIBRATION_SEEDS
-
-
-@dataclass(frozen=True)
-class RigRanges:
-    """The least and the largest value of all cameras."""
-
-    focal_px: tuple[float, float]
-    height_m: tuple[float, float]
-
-    @staticmethod
-    def of_drives(facts: DriveFacts) -> RigRanges:
-        def widened(found: tuple[float, float]) -> tuple[float, float]:
-            return found[0] / RECORDED_MARGIN, found[1] * RECORDED_MARGIN
-
-        return RigRanges(widened(facts.focal_range_px), widened(facts.height_range_m))
-
-
-# The metadata of a model with the ranges of RigRanges, in the order of its fields.
-RANGE_KEYS = ("bevloc.rig.focal_range_px", "bevloc.rig.height_range_m")
-# The random rigs of --nuisances street (sim/samples/random_rig.cpp). They have 50 to 120 degrees of
-# view, of which a network image shows at most 90 (pipeline/preprocessing/network_camera.h).
-RANDOM_RIGS = RigRanges((160, 343), (0.6, 2.6))
 
 
 def _info(name: str, kind: int, shape: list[int]) -> onnx.ValueInfoProto:
@@ -135,30 +110,6 @@ def _range_statements(rigs: list[RigRanges]) -> dict[str, str]:
     return {key: f"{min(found):.4g} {max(found):.4g}" for key, found in zip(RANGE_KEYS, values)}
 
 
-def stated_ranges(path: Path) -> RigRanges | None:
-    """The ranges that a model file states; None if its network was trained on one rig.
-    CheckpointError if it states anything else."""
-    stated = {entry.key: entry.value for entry in onnx.load(str(path)).metadata_props}
-    found = [stated[key] for key in RANGE_KEYS if key in stated]
-    if not found:
-        return None
-    try:
-        (focal_least, focal_most), (least_m, most_m) = (map(float, text.split()) for text in found)
-    except ValueError as error:
-        raise CheckpointError(
-            f"{path}: found '{', '.join(found)}' as the ranges of the rig in the metadata, wanted "
-            "two numbers each for focal length and height"
-        ) from error
-    return RigRanges((focal_least, focal_most), (least_m, most_m))
-
-
-def stored_ranges(config: Mapping[str, Any]) -> list[RigRanges] | None:
-    """The ranges that training.blend stored in a checkpoint; None in one of training.train.
-    `config`: of the checkpoint."""
-    stored = config.get("rig_ranges")
-    return None if stored is None else [RigRanges(**ranges) for ranges in stored]
-
-
 def rig_statements(
     nuisances: str = "usual",
     facts: DriveFacts | None = None,
@@ -168,15 +119,16 @@ def rig_statements(
     """What the model states about the cameras that it was trained with, so that bevlocd can refuse
     a rig of very different ones (pipeline/network/model/model_rig.h). `nuisances`: of training.
     `facts`: those of the drives of training, if any. `stored`: stored_ranges(), which are those of
-    the training where there are any."""
+    the training where there are any. A network that knows other rigs knows the one of `rig_file`
+    too."""
     cameras = yaml.safe_load(rig_file.read_text())["cameras"]
     focal_px = [c["fx_px"] * IMAGE_COLS / c["image_size_px"][0] for c in cameras.values()]
     height_m = [c["vehicle_from_camera"]["translation_m"][2] for c in cameras.values()]
-    drawn = [RANDOM_RIGS] if nuisances == "street" else []
-    ranges = drawn if stored is None else list(stored)
+    ranges = drawn_ranges(nuisances) if stored is None else list(stored)
     if facts is not None:
-        own = RigRanges((min(focal_px), max(focal_px)), (min(height_m), max(height_m)))
-        ranges += [own, RigRanges.of_drives(facts)]
+        ranges.append(RigRanges.of_drives(facts))
+    if ranges:
+        ranges.append(RigRanges((min(focal_px), max(focal_px)), (min(height_m), max(height_m))))
     return _range_statements(ranges) | {
         "bevloc.rig.cameras": " ".join(cameras),
         "bevloc.rig.image_size_px": f"{IMAGE_COLS} {IMAGE_ROWS}",
@@ -232,11 +184,26 @@ def check_source(config: Mapping[str, Any], checkpoint: Path, drives: Drives | N
             f"{checkpoint}: found a run on nuScenes ({folder}), which cannot be exported; give a "
             "run on the simulator, or one on recorded drives with --recordings and --map"
         )
-    if (folder := config.get("recordings")) and drives is None:
-        raise TrainingError(
-            f"{checkpoint}: found a run on recorded drives, wanted these drives for the ranges of "
-            f"int8; give --recordings {folder} --map {config.get('map')}"
-        )
+    if config.get("recordings"):
+        _check_drives(config, checkpoint, drives)
+
+
+def _check_drives(config: Mapping[str, Any], checkpoint: Path, drives: Drives | None) -> None:
+    """TrainingError if an export does not have the drives of its run, or has other calibrations or
+    reference poses of them. The files may have been moved. `config`: of the run."""
+    reference = config.get("reference", TrainingConfig.reference)
+    if drives and bool(drives.rig) == bool(config.get("rig")) and drives.reference == reference:
+        return
+    defaults = TrainingConfig().as_dict()
+    options = " ".join(
+        f"{option_name(field)} {config[field]}"
+        for field in DRIVE_FIELDS
+        if config.get(field, defaults[field]) != defaults[field]
+    )
+    raise TrainingError(
+        f"{checkpoint}: found a run on recorded drives, wanted these drives, with the same rig and "
+        f"reference poses, for the ranges of int8 and sigma; give {options}"
+    )
 
 
 def check_simulated(config: Mapping[str, Any], checkpoint: Path) -> None:
@@ -255,7 +222,7 @@ def fitting_batches(
     """Samples for the ranges of int8 and for sigma, and those for the score. Training used none of
     them."""
     if drives is not None:
-        batches = drive_batches(drives, "calibration", samples, threads)
+        batches = calibration_set(drives, samples, threads)
         return batches, batches
     batches = calibration_batches(samples, threads, nuisances)
     # Samples with rare nuisances have lower scores, and most of a drive has no such nuisance.

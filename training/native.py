@@ -11,30 +11,27 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from training.built_file import built_file
+
 ENVIRONMENT = "BEVLOC_TRAINING_LIBRARY"
 _BUILD = Path(__file__).resolve().parent.parent / "build"
-_LIBRARY = Path("training/native/libbevloc_training.so")
+_LIBRARY = "training/native/libbevloc_training.so"
 
 
 def library_path() -> Path:
-    """$BEVLOC_TRAINING_LIBRARY, or else the first library found in build/ or build/<preset>/."""
+    """$BEVLOC_TRAINING_LIBRARY, or else the library of the build."""
     if chosen := os.environ.get(ENVIRONMENT):
         return Path(chosen)
-    if built := _built_library():
+    if built := built_file(_BUILD, _LIBRARY):
         return built
     raise FileNotFoundError(
-        f"{_BUILD}: found no {_LIBRARY.name}; build the target bevloc_training or set {ENVIRONMENT}"
+        f"{_BUILD}: found no {_LIBRARY}; build the target bevloc_training or set {ENVIRONMENT}"
     )
-
-
-def _built_library() -> Path | None:
-    candidates = [_BUILD / _LIBRARY, *sorted(_BUILD.glob(f"*/{_LIBRARY}"))]
-    return next((candidate for candidate in candidates if candidate.exists()), None)
 
 
 @lru_cache(maxsize=1)
 def _is_built() -> bool:
-    return ENVIRONMENT in os.environ or _built_library() is not None
+    return ENVIRONMENT in os.environ or built_file(_BUILD, _LIBRARY) is not None
 
 
 def runs_natively(features: Tensor) -> bool:

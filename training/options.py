@@ -23,6 +23,8 @@ _CHOICES = {
     "reference": REFERENCES,
 }
 
+# The fields of TrainingConfig that name recorded drives and say how they are read.
+DRIVE_FIELDS = ("recordings", "map", "rig", "reference", "on_error")
 # Options that mean nothing without another one.
 _NEEDED = {"scenes": "nuscenes", "nuscenes_version": "nuscenes", "rig": "recordings"}
 # The numbers that an option may have, never nan or inf, and the fields with this range.
@@ -70,7 +72,7 @@ def parse_config(arguments: list[str], description: str, processes: int = 1) -> 
         prog="training.train", description=description, allow_abbrev=False
     )
     for field in dataclasses.fields(TrainingConfig):
-        option = _option_name(field.name)
+        option = option_name(field.name)
         if isinstance(field.default, bool):
             parser.add_argument(option, action="store_true")
         else:
@@ -86,9 +88,9 @@ def parse_config(arguments: list[str], description: str, processes: int = 1) -> 
 def add_drive_options(parser: argparse.ArgumentParser) -> None:
     """The options of TrainingConfig that name recorded drives, for other programs."""
     fields = {field.name: field for field in dataclasses.fields(TrainingConfig)}
-    for name in ("recordings", "map", "rig", "reference", "on_error"):
+    for name in DRIVE_FIELDS:
         choices = _CHOICES.get(name)
-        parser.add_argument(_option_name(name), default=fields[name].default, choices=choices)
+        parser.add_argument(option_name(name), default=fields[name].default, choices=choices)
 
 
 def drives_of(options: argparse.Namespace | TrainingConfig) -> Drives:
@@ -102,7 +104,7 @@ def drives_of(options: argparse.Namespace | TrainingConfig) -> Drives:
     )
 
 
-def _option_name(field: str) -> str:
+def option_name(field: str) -> str:
     return "--" + field.replace("_", "-")
 
 
@@ -116,7 +118,7 @@ def _check(config: TrainingConfig, processes: int) -> None:
     for field, choices in _CHOICES.items():
         if (found := getattr(config, field)) not in choices:
             wanted = f"wanted one of {', '.join(choices)}"
-            raise ValueError(f"{_option_name(field)}: found '{found}', {wanted}")
+            raise ValueError(f"{option_name(field)}: found '{found}', {wanted}")
     if config.batch % processes:
         wanted = f"wanted a positive multiple of {processes} processes"
         raise ValueError(f"--batch: found {config.batch}, {wanted}")
@@ -127,7 +129,7 @@ def _check(config: TrainingConfig, processes: int) -> None:
         raise ValueError(f"--validation-scenes: found no --scenes, {wanted}")
     for field, needed in _NEEDED.items():
         if getattr(config, field) and not getattr(config, needed):
-            raise ValueError(f"{_option_name(field)}: found no --{needed}, wanted it too")
+            raise ValueError(f"{option_name(field)}: found no --{needed}, wanted it too")
     if bool(config.recordings) != bool(config.map):
         raise ValueError("--recordings and --map: found one of them, wanted both or none")
     check_fits_sampler(network_config(config.network, config.view))
@@ -149,4 +151,4 @@ def _check_ranges(config: TrainingConfig) -> None:
     for wanted, accepts, fields in _RANGES:
         for field in fields:
             if not accepts(value := getattr(config, field)):
-                raise ValueError(f"{_option_name(field)}: found {value}, wanted {wanted}")
+                raise ValueError(f"{option_name(field)}: found {value}, wanted {wanted}")

@@ -16,7 +16,14 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from training.checkpoint import load_network, nuisances_of, read_checkpoint, state_of_weights
+from training.checkpoint import (
+    load_network,
+    new_checkpoint,
+    nuisances_of,
+    read_checkpoint,
+    state_of_weights,
+    write_checkpoint,
+)
 from training.config import FIRST_TRAINING_SEED, QAT_SEEDS
 from training.data import Batch, SamplerStream, Stream
 from training.errors import NotFiniteError, run_program
@@ -85,7 +92,7 @@ def save(network: FakeQuantized, first: Path, samples: int, path: Path) -> None:
     weights = network.net.state_dict()
     finished = state_of_weights(weights, state["config"], state["samples"] + samples)
     path.parent.mkdir(parents=True, exist_ok=True)
-    torch.save({**finished, "quantization": quantization.state()}, path)
+    write_checkpoint({**finished, "quantization": quantization.state()}, path)
 
 
 def main() -> None:
@@ -106,6 +113,7 @@ def main() -> None:
         parser.error(f"--samples: found {arguments.samples}, {wanted}")
     torch.set_num_threads(arguments.threads)
     check_simulated(read_checkpoint(arguments.checkpoint)["config"], arguments.checkpoint)
+    out = new_checkpoint(arguments.run)
     net = load_network(arguments.checkpoint)
     threads, nuisances = arguments.threads, nuisances_of(arguments.checkpoint)
     batches = calibration_batches(arguments.calibration, threads, nuisances)
@@ -113,7 +121,6 @@ def main() -> None:
     stream = SamplerStream(SEED, 0, threads, DROP_CAMERA_PROBABILITY, nuisances=nuisances)
     fine_tune(network, stream, steps, arguments.batch, arguments.learning_rate)
     stream.close()
-    out = arguments.run / "checkpoint.pt"
     save(network, arguments.checkpoint, steps * arguments.batch, out)
     print(out)
 

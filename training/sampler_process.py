@@ -17,6 +17,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from training.built_file import built_file
 from training.errors import TrainingError
 from training.model import (
     BEV_COLS,
@@ -91,7 +92,7 @@ class DriveFacts:
 class Drives:
     """Recorded drives (training/drives/drive_set.h). `rig`: a calibration instead of the recorded
     ones. `reference`: file, own or truth. `skip_bad`: whether the next good sample replaces a bad
-    one; otherwise a bad sample ends the program."""
+    one in training, and fixed sets leave it out; otherwise a bad sample ends the program."""
 
     recordings: str
     map: str
@@ -118,7 +119,8 @@ class Drives:
 class DriveOptions:
     """Which samples of recorded drives are read: those of `part` (training, calibration or
     held-back) with the numbers first_sample, first_sample + stride, and so on, in an order that the
-    seed gives."""
+    seed gives. `blank_bad`: a bad sample comes without cameras and is not replaced, so that no
+    place comes twice; for drives that do not skip bad samples."""
 
     program: ClassVar[str] = DRIVE_PROGRAM
     drives: Drives
@@ -127,6 +129,7 @@ class DriveOptions:
     stride: int = 1
     part: str = "training"
     drop_camera_probability: float = 0.0
+    blank_bad: bool = False
 
 
 def arguments_of(options: SamplerOptions | DriveOptions) -> list[str]:
@@ -145,14 +148,13 @@ def arguments_of(options: SamplerOptions | DriveOptions) -> list[str]:
 
 
 def sampler_program(name: str = PROGRAM) -> Path:
-    """A program beside $BEVLOC_SAMPLER, or the bundle's own one, or the first one in
-    build/<preset>/bin."""
+    """A program beside $BEVLOC_SAMPLER, or the bundle's own one, or that of the build."""
     if chosen := os.environ.get(ENVIRONMENT):
         return Path(chosen) if name == PROGRAM else Path(chosen).with_name(name)
-    candidates = [_ROOT / BUNDLED / name, *sorted(_ROOT.glob(f"build/*/bin/{name}"))]
-    for candidate in candidates:
-        if candidate.exists():
-            return candidate
+    if (bundled := _ROOT / BUNDLED / name).exists():
+        return bundled
+    if built := built_file(_ROOT / "build", f"bin/{name}"):
+        return built
     raise SamplerError(f"{_ROOT}: found no {name}; build the target {name} or set {ENVIRONMENT}")
 
 

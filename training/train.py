@@ -21,7 +21,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from training.checkpoint import load_weights, read_checkpoint
+from training.checkpoint import load_weights, read_checkpoint, write_checkpoint
 from training.compact import pack
 from training.config import TrainingConfig
 from training.data import Batch, Stream, augment
@@ -46,6 +46,7 @@ from training.options import parse_config
 from training.precision import choose_precision, cpu_flags
 from training.progress import Progress
 from training.read_ahead import ReadAhead
+from training.rig_ranges import ranges_of_run, stored_ranges, to_store
 from training.run_table import CURVES, VALIDATION, append_row, drop_rows_after
 from training.solver import DEFINITION, estimate, standardise
 from training.sources import training_stream, validation_set
@@ -106,6 +107,7 @@ class Trainer:
         net = BevNetwork(network)
         if config.init:
             start_with(net, Path(config.init), lambda: measuring_batches(config, make_stream))
+        self.rig_ranges = ranges_of_run(config) if processes.first else []
         self.net = channels_last(net.to(self.device))
         self.average = channels_last(BevNetwork(network).to(self.device))
         self.average.load_state_dict(self.net.state_dict())
@@ -159,7 +161,6 @@ class Trainer:
         if not self.processes.first:
             return
         self._check_weights()
-        partial = self.checkpoint_path.with_suffix(".partial")
         state = {
             "model": self.net.state_dict(),
             "ema": self.average.state_dict(),
@@ -169,10 +170,9 @@ class Trainer:
             "elapsed_s": self.elapsed_s,
             "patience": self.patience.state(),
             "processes": self.processes.count,
-            "config": self.config.as_dict(),
+            "config": self.config.as_dict() | to_store(self.rig_ranges),
         }
-        torch.save(pack(state) if self.config.compact else state, partial)
-        partial.replace(self.checkpoint_path)
+        write_checkpoint(pack(state) if self.config.compact else state, self.checkpoint_path)
 
     def _load(self) -> None:
         path, count = self.checkpoint_path, self.processes.count
@@ -190,6 +190,7 @@ class Trainer:
             self.elapsed_s = state["elapsed_s"]
         except (KeyError, ValueError) as error:
             raise CheckpointError(f"{path}: the run cannot be resumed ({error})") from error
+        self.rig_ranges += stored_ranges(state["config"]) or []
         if "patience" in state:
             self.patience.resume(state["patience"])
 

@@ -14,12 +14,13 @@ import torch
 
 from training import blend
 from training.checkpoint import load_network, nuisances_of, read_checkpoint
-from training.errors import CheckpointError
-from training.export_onnx import RANGE_KEYS, build_model, rig_statements, stored_ranges
+from training.errors import CheckpointError, TrainingError
+from training.export_onnx import build_model, rig_statements
 from training.graph import folded_convolutions
 from training.models import PRESETS, BevNetwork
 from training.models.config import ModelConfig, network_config
 from training.onnx_graph import FloatOnnxBackend
+from training.rig_ranges import RANGE_KEYS, stored_ranges
 
 LAST = "head.second.weight"
 
@@ -50,12 +51,14 @@ class Blend(unittest.TestCase):
         self.files = [self.root / "first.onnx", self.root / "second.onnx"]
         self.networks = [write_network(seed, path) for seed, path in enumerate(self.files)]
 
-    def run_program(self, share: str, *options: str) -> Path:
-        arguments = ["blend", *map(str, self.files), "--share", share, "--run", str(self.root)]
+    def run_program(self, share: str, *options: str, run: Path | None = None) -> Path:
+        """Blends into the folder `run`, by default a new one. Returns the checkpoint."""
+        run = run or Path(tempfile.mkdtemp(dir=self.root))
+        arguments = ["blend", *map(str, self.files), "--share", share, "--run", str(run)]
         arguments += options
         with mock.patch("sys.argv", arguments), contextlib.redirect_stdout(io.StringIO()):
             blend.main()
-        return self.root / "checkpoint.pt"
+        return run / "checkpoint.pt"
 
     def test_a_quarter_of_the_second_network(self) -> None:
         net = load_network(self.run_program("0.25"))
@@ -99,6 +102,16 @@ class Blend(unittest.TestCase):
             write_network(1, self.files[1], rig=rig)
             with self.assertRaisesRegex(CheckpointError, "second.onnx: found '150.*wanted two num"):
                 self.run_program("0.5")
+
+    def test_another_run_is_not_replaced(self) -> None:
+        run = self.root / "run"
+        checkpoint = self.run_program("0.25", run=run)
+        self.assertEqual(list(run.iterdir()), [checkpoint])
+        content = checkpoint.read_bytes()
+        message = f"{checkpoint}: found a run, wanted another folder for --run"
+        with self.assertRaisesRegex(TrainingError, message):
+            self.run_program("0.5", run=run)
+        self.assertEqual(checkpoint.read_bytes(), content)
 
     def test_refuses_a_share_beyond_1(self) -> None:
         with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()) as errors:

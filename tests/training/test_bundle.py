@@ -147,13 +147,19 @@ class Options(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def bundled(self, run: TrainingConfig, *options: str) -> list[str]:
-        """The options of a bundle that continues a run."""
+    def filled(
+        self, run: TrainingConfig, *options: str, photos: Path | None = None
+    ) -> tuple[TrainingConfig, list[str]]:
+        """The configuration and the options of a bundle that continues a run."""
         torch.save(state_of_weights({}, run.as_dict()), self.folder / "checkpoint.pt")
-        arguments = argparse.Namespace(init=None, run=self.folder, photos=None)
+        arguments = argparse.Namespace(init=None, run=self.folder, photos=photos)
         with unittest.mock.patch("training.bundle.fill") as fill:
             make(arguments, list(options), self.folder / "bundle")
-        return fill.call_args.args[2]
+        (self.folder / "bundle").rmdir()
+        return fill.call_args.args[1:3]
+
+    def bundled(self, run: TrainingConfig, *options: str) -> list[str]:
+        return self.filled(run, *options)[1]
 
     def test_a_bundle_continues_a_run_without_the_end_of_its_part(self):
         run = TrainingConfig(minutes=60, stop_after_minutes=9, batch=16)
@@ -162,6 +168,24 @@ class Options(unittest.TestCase):
     def test_a_bundle_continues_a_run_with_the_given_budget(self):
         run = TrainingConfig(minutes=60, batch=16)
         self.assertEqual(self.bundled(run, "--samples=8"), ["--batch", "16", "--samples=8"])
+
+    def test_a_bundle_continues_a_run_with_its_photographs(self):
+        own, others = self.folder / "own", self.folder / "others"
+        for photos in (own, others):
+            photos.mkdir()
+        run = TrainingConfig(minutes=60, photos=str(own))
+        config, options = self.filled(run)
+        # The bundle's program names the folder that the photographs have there.
+        self.assertEqual((config.photos, options), (str(own), ["--minutes", "60"]))
+        self.assertEqual(self.filled(run, photos=others)[0].photos, str(others))
+        self.assertEqual(self.filled(TrainingConfig(minutes=60))[0].photos, "")
+
+    def test_a_bundle_does_not_continue_a_run_without_its_photographs(self):
+        run = TrainingConfig(minutes=60, photos="/nowhere")
+        message = "checkpoint.pt: found a run with the photographs '/nowhere', wanted this folder"
+        with self.assertRaisesRegex(BundleError, message):
+            self.bundled(run)
+        self.assertFalse((self.folder / "bundle").exists())
 
     def test_a_bundle_cannot_continue_a_run_on_recorded_drives(self):
         run = TrainingConfig(samples=8, recordings="mine", map="town.osm")

@@ -17,7 +17,7 @@ from PIL import Image
 from training.config import TrainingConfig
 from training.data import DriveStream, MixedStream
 from training.distributed import Share
-from training.drive_report import figures_table, report
+from training.drive_report import figures_table, remarks, report
 from training.errors import TrainingError
 from training.evaluate import AXES, CLASSES
 from training.options import parse_config
@@ -34,16 +34,16 @@ NORTH_M = 50
 STEP_NS = 200_000_000
 
 
-def write_drive(folder: Path, length_m: int = LENGTH_M) -> None:
+def write_drive(folder: Path, length_m: int = LENGTH_M, spacing_m: int = SPACING_M) -> None:
     """A drive to the east with one picture per camera that every frame shows, and a map."""
     size = (640, 360)
-    frames = length_m // SPACING_M
+    frames = length_m // spacing_m
     for number, camera in enumerate(CAMERAS):
         (folder / camera).mkdir(parents=True)
         Image.new("RGB", size, (40 + number, 90, 90)).save(folder / camera / "0.png")
         lines = [f"{i} {(i + 1) * STEP_NS} 0.png" for i in range(frames)]
         (folder / camera / "frames.txt").write_text("\n".join(lines) + "\n")
-    poses = [f"{i * STEP_NS},{i * SPACING_M},{NORTH_M},0" for i in range(frames + 3)]
+    poses = [f"{i * STEP_NS},{i * spacing_m},{NORTH_M},0" for i in range(frames + 3)]
     (folder / "reference.csv").write_text("time_ns,x_m,y_m,yaw_deg\n" + "\n".join(poses) + "\n")
 
 
@@ -123,11 +123,21 @@ class DrivesTest(unittest.TestCase):
             validation_set(config)
 
     def test_drives_without_a_held_back_sample_are_refused_before_training(self) -> None:
-        samples = {"training": 66, "calibration": 10, "held-back": 0}
+        samples = {"training": 66, "calibration": 24, "held-back": 0}
         facts = DriveFacts(samples, (200.0, 600.0), (1.2, 3.1))
         with patch("training.sampler_process.Drives.facts", return_value=facts):
             with self.assertRaisesRegex(TrainingError, "found no sample of the part held-back"):
                 validation_set(self.config(0.0))
+
+    def test_drives_with_little_for_calibration_are_refused_before_training(self) -> None:
+        for count, found in ((1, "1 sample"), (10, "10 samples"), (23, "23 samples")):
+            facts = DriveFacts(
+                {"training": 66, "calibration": count, "held-back": 9}, (200, 600), (1, 3)
+            )
+            with patch("training.sampler_process.Drives.facts", return_value=facts):
+                message = f"found {found} of the part calibration, wanted at least 24; give drives"
+                with self.assertRaisesRegex(TrainingError, message):
+                    validation_set(self.config(0.0))
 
     def test_the_facts_have_the_ranges_of_the_cameras(self) -> None:
         cameras = yaml.safe_load(RIG.read_text())["cameras"].values()
@@ -171,6 +181,39 @@ class DrivesTest(unittest.TestCase):
         for name, tensor in vars(resumed).items():
             self.assertTrue(torch.equal(tensor, getattr(whole, name)[4:]), name)
 
+    def test_fixed_sets_leave_bad_samples_out(self) -> None:
+        whole = drive_batches(self.drives, "held-back", 999, 1)
+        # The frames 29 to 38 show the square that is held back.
+        self.spoil("back", 34)
+        with self.assertRaisesRegex(SamplerError, "ended with status 1"):
+            drive_batches(self.drives, "held-back", 999, 1)
+        skipping = dataclasses.replace(self.drives, skip_bad=True)
+        for threads in (1, 2):
+            good = drive_batches(skipping, "held-back", 999, threads)
+            self.assertEqual(sum(map(len, good)), 5)
+            places = {tuple(row.tolist()) for batch in good for row in batch.correction}
+            self.assertEqual(len(places), 5)
+            self.assertLess(
+                places, {tuple(row.tolist()) for batch in whole for row in batch.correction}
+            )
+            self.assertTrue(all((batch.camera_mask == 63).all() for batch in good))
+        self.assertEqual(sum(map(len, drive_batches(skipping, "held-back", 3, 1))), 3)
+
+    def test_a_report_counts_the_good_samples(self) -> None:
+        self.spoil("back", 34)
+        skipping = dataclasses.replace(self.drives, skip_bad=True)
+        with patch("training.drive_report.evaluate_native"), \
+                patch("training.drive_report.NativeNetwork"), \
+                patch("training.drive_report.figures_table", return_value=""):
+            text = report(Path("before"), Path("after"), skipping, 512, 1)
+        self.assertIn("10 held back, 5 of them used here", text)
+
+    def test_fixed_sets_need_a_good_sample(self) -> None:
+        self.spoil("front_left", LENGTH_M // SPACING_M)
+        skipping = dataclasses.replace(self.drives, skip_bad=True)
+        with self.assertRaisesRegex(TrainingError, "found no good sample of the part held-back"):
+            drive_batches(skipping, "held-back", 8, 1)
+
     def test_drives_without_a_good_sample_end_the_run(self) -> None:
         self.spoil("front_left", LENGTH_M // SPACING_M)
         with self.assertRaisesRegex(SamplerError, "ended with status 1"):
@@ -210,10 +253,12 @@ class DrivesTest(unittest.TestCase):
             self.assertLessEqual(max(b - a for a, b in zip(taken, taken[1:])), 1)
 
     def test_validates_where_nothing_is_trained(self) -> None:
-        batches = validation_set(self.config(0.0))
+        write_drive(self.root / "slow", spacing_m=4)
+        config = dataclasses.replace(self.config(0.0), recordings=str(self.root / "slow"))
+        batches = validation_set(config)
         self.assertEqual(sum(map(len, batches)), 3)
-        with patch("training.sources.drive_batches", return_value=[]) as read:
-            validation_set(self.config(0.0))
+        with patch("training.sources.drive_batches", return_value=[range(3)]) as read:
+            validation_set(config)
         # The report has the places that are held back.
         self.assertEqual(read.call_args.args[1], "calibration")
 
@@ -237,6 +282,12 @@ class DrivesTest(unittest.TestCase):
         rows = [line.split("|")[2:4] for line in text.splitlines() if line.startswith("| IoU")]
         self.assertEqual(len(rows), len(CLASSES))
         self.assertTrue(all(before == after for before, after in rows))
+
+    def test_the_report_says_what_limits_its_figures(self) -> None:
+        self.assertEqual(remarks(self.drives, 24), [])
+        self.assertIn("Fewer than 24 samples", remarks(self.drives, 23)[0])
+        own = dataclasses.replace(self.drives, reference="own")
+        self.assertIn("the sigmas of the new model are too small", remarks(own, 24)[0])
 
     def test_the_table_keeps_before_and_after_apart(self) -> None:
         def metrics(value: float) -> dict[str, float]:

@@ -6,6 +6,7 @@ import io
 import math
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -41,6 +42,7 @@ from training.quantize import (
     round_bias,
     run,
 )
+from training.rig_ranges import RANGE_KEYS, RigRanges
 from training.runtime import NativeNetwork
 from training.sampler_process import DriveFacts, Drives
 
@@ -246,6 +248,11 @@ class Export(unittest.TestCase):
             self.assertGreater(least, 0.9 * lowest_m)
             self.assertGreaterEqual(most, 3.1)
 
+    def test_a_model_states_the_rigs_of_its_start_and_of_the_simulator_too(self):
+        statements = rig_statements("usual", stored=[RigRanges((300.0, 400.0), (1.8, 3.2))])
+        # The least ones are those of the demo rig.
+        self.assertEqual([statements[key] for key in RANGE_KEYS], ["161.8 400", "1.496 3.2"])
+
 
 class Sources(unittest.TestCase):
     """Which runs are exported, and with which samples."""
@@ -253,9 +260,9 @@ class Sources(unittest.TestCase):
     drives = Drives("drives", "town.osm")
     path = Path("run/checkpoint.pt")
 
-    def refusal(self, config: TrainingConfig) -> str:
+    def refusal(self, config: TrainingConfig, drives: Drives | None = None) -> str:
         with self.assertRaises(TrainingError) as caught:
-            check_source(config.as_dict(), self.path, None)
+            check_source(config.as_dict(), self.path, drives)
         return str(caught.exception)
 
     def test_a_run_on_real_data_is_not_exported_as_one_on_the_simulator(self):
@@ -265,15 +272,43 @@ class Sources(unittest.TestCase):
         self.assertIn("found a run on recorded drives", said)
         self.assertIn("give --recordings mine --map town.osm", said)
 
+    def test_drives_have_the_calibration_and_the_reference_of_the_run(self):
+        run = TrainingConfig(recordings="mine", map="m", rig="new.yaml", reference="own")
+        said = self.refusal(run)
+        self.assertIn("give --recordings mine --map m --rig new.yaml --reference own", said)
+        same = replace(self.drives, rig="moved/new.yaml", reference="own")
+        check_source(run.as_dict(), self.path, same)
+        for others in (
+            self.drives,
+            replace(same, rig=""),
+            replace(same, reference="file"),
+        ):
+            self.assertEqual(self.refusal(run, others), said)
+        recorded = TrainingConfig(recordings="mine", map="m", on_error="skip")
+        said = self.refusal(recorded, replace(self.drives, rig="new.yaml"))
+        self.assertIn("with the same rig and reference poses", said)
+        self.assertTrue(said.endswith("give --recordings mine --map m --on-error skip"), said)
+
     def test_other_runs_are_exported(self):
         check_source(TrainingConfig().as_dict(), self.path, None)
         check_source({}, self.path, None)  # an old checkpoint
         check_source(TrainingConfig(recordings="mine", map="m").as_dict(), self.path, self.drives)
 
     def test_ranges_and_scales_are_fitted_on_samples_that_training_does_not_use(self):
-        with patch("training.export_onnx.drive_batches", return_value=[]) as read:
-            fitting_batches(self.drives, "street", 8, 2)
+        enough = [range(8)]
+        with patch("training.sources.drive_batches", return_value=enough) as read:
+            self.assertEqual(fitting_batches(self.drives, "street", 8, 2), (enough, enough))
         read.assert_called_once_with(self.drives, "calibration", 8, 2)
+
+    def test_scales_are_not_fitted_to_a_few_samples(self):
+        for found, refused in ((23, True), (24, False)):
+            with patch("training.sources.drive_batches", return_value=[range(found)]):
+                if not refused:
+                    fitting_batches(self.drives, "street", 384, 2)
+                    continue
+                message = f"drives: found {found} samples of the part calibration, wanted at least"
+                with self.assertRaisesRegex(TrainingError, message):
+                    fitting_batches(self.drives, "street", 384, 2)
 
     def test_the_score_is_fitted_on_usual_samples(self):
         with patch("training.export_onnx.calibration_batches", side_effect=[["a"], ["b"]]) as read:

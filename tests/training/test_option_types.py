@@ -55,6 +55,8 @@ class Programs(unittest.TestCase):
         alone = ("checkpoint.pt", "--nuscenes-version", "v1.0-mini")
         said = self.refusal(evaluate.main, *alone)
         self.assertIn("--nuscenes-version: found no --nuscenes", said)
+        said = self.refusal(evaluate.main, "checkpoint.pt", "--line-width-cells", "8")
+        self.assertIn("--line-width-cells: found no --nuscenes", said)
 
     def test_a_real_frame_needs_its_rig(self):
         said = self.refusal(picture_statistics.main, "--real", "pictures")

@@ -126,7 +126,7 @@ class Program(unittest.TestCase):
             torch.save(state_of_weights(weights, {"nuisances": "strong"}), path)
             with patch("training.qat.calibration_batches", return_value=[batch]) as calibration, \
                     patch("training.qat.SamplerStream", return_value=SameBatch(batch)) as stream:
-                self.run_main(str(path), "--run", folder, "--samples=1", "--batch=1")
+                self.run_main(str(path), "--run", f"{folder}/qat", "--samples=1", "--batch=1")
         self.assertEqual(calibration.call_args.args[2], "strong")
         self.assertEqual(stream.call_args.kwargs["nuisances"], "strong")
 
@@ -141,6 +141,19 @@ class Program(unittest.TestCase):
                 with self.assertRaisesRegex(TrainingError, message):
                     with patch.object(sys, "argv", ["report", str(path)]):
                         quantization_report.main()
+
+    def test_another_run_is_not_replaced(self):
+        weights = untrained_network().state_dict()
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "checkpoint.pt"
+            torch.save(state_of_weights(weights, {}), path)
+            content = path.read_bytes()
+            with patch("training.qat.calibration_batches") as rendered:
+                message = f"{path}: found a run, wanted another folder for --run"
+                with self.assertRaisesRegex(TrainingError, message):
+                    self.run_main(str(path), "--run", folder)
+            rendered.assert_not_called()
+            self.assertEqual(path.read_bytes(), content)
 
     def test_refuses_less_than_a_batch(self):
         said = io.StringIO()

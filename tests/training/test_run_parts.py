@@ -10,7 +10,7 @@ from unittest.mock import patch
 
 import torch
 
-from training.checkpoint import load_network, network_of, read_checkpoint
+from training.checkpoint import load_network, network_of, read_checkpoint, write_checkpoint
 from training.config import TrainingConfig
 from training.early_stop import Patience
 from training.errors import CheckpointError, TrainingError
@@ -181,6 +181,17 @@ class Checkpoints(unittest.TestCase):
         self.assertEqual((loaded.config.name, loaded.config.view), ("small-lut", "lut"))
         self.assertTrue(torch.equal(loaded.head.second.weight, network.head.second.weight))
         self.assertFalse(loaded.training)
+
+    def test_a_full_disk_leaves_the_checkpoint(self):
+        self.path.write_text("good")
+
+        def fill_the_disk(_: dict, path: Path) -> None:
+            path.write_text("half")
+            raise OSError("no space left")
+
+        with patch("torch.save", side_effect=fill_the_disk), self.assertRaises(OSError):
+            write_checkpoint({}, self.path)
+        self.assertEqual(self.path.read_text(), "good")
 
     def test_an_old_checkpoint_without_a_network_name_is_nano(self):
         self.write(BevNetwork(PRESETS["nano"]), {"bf16": True})

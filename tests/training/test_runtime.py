@@ -1,15 +1,20 @@
 """Tests the native library: sampler, network and solvers."""
 
+import os
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest.mock import patch
 
 import onnx
 import torch
 
 from tests.training.synthetic import SyntheticStream
+from training import native as native_library
+from training import sampler_process
+from training.built_file import built_file
 from training.data import Batch, view_table
 from training.errors import TrainingError
 from training.evaluate import float_inference
@@ -41,6 +46,45 @@ class Sampler(unittest.TestCase):
     def test_the_program_exits_cleanly_with_an_open_sampler(self):
         ended = subprocess.run([sys.executable, "-c", LEAVES_A_SAMPLER_OPEN], timeout=240)
         self.assertEqual(ended.returncode, 0)
+
+
+class BuiltFiles(unittest.TestCase):
+    """Which build a command uses without a variable that names one."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+
+    def build(self, name: str, time_s: int) -> Path:
+        path = self.root / "build" / name
+        path.parent.mkdir(parents=True)
+        path.touch()
+        os.utime(path, (time_s, time_s))
+        return path
+
+    def test_release_comes_first_and_then_the_newest(self):
+        self.assertIsNone(built_file(self.root / "build", "bin/program"))
+        debug = self.build("debug/bin/program", 100)
+        for preset, time_s, found in (("asan", 9, debug), ("tsan", 200, 0), ("release", 9, 0)):
+            built = self.build(f"{preset}/bin/program", time_s)
+            self.assertEqual(built_file(self.root / "build", "bin/program"), found or built)
+
+    def test_a_build_without_presets_is_found(self):
+        built = self.build("bin/program", 100)
+        self.assertEqual(built_file(self.root / "build", "bin/program"), built)
+
+    def test_programs_and_library_are_those_of_release(self):
+        names = ("bin/bevloc_sampler", "training/native/libbevloc_training.so")
+        for preset, time_s in (("debug", 200), ("release", 100)):
+            program, library = (self.build(f"{preset}/{name}", time_s) for name in names)
+        build = self.root / "build"
+        with patch.object(sampler_process, "_ROOT", self.root), patch.dict(os.environ), \
+                patch.object(native_library, "_BUILD", build):
+            for variable in (sampler_process.ENVIRONMENT, native_library.ENVIRONMENT):
+                os.environ.pop(variable, None)
+            self.assertEqual(sampler_process.sampler_program(), program)
+            self.assertEqual(native_library.library_path(), library)
 
 
 class RunTime(unittest.TestCase):

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import shutil
 import tempfile
 import unittest
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 import torch
 
 from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, VERSION, write_tree
+from tests.training.untrained import untrained_network
+from training import evaluate
+from training.checkpoint import state_of_weights
 from training.config import FIRST_VALIDATION_SEED, TrainingConfig
 from training.data import NUISANCES, Batch
 from training.distributed import WHOLE, Share
@@ -67,6 +73,25 @@ class Sources(unittest.TestCase):
         self.assertEqual(sum(map(len, batches)), SCENES * SAMPLES_PER_SCENE)
         rasters = torch.cat([batch.raster_truth for batch in batches]).flatten(1)
         self.assertEqual(len(rasters.unique(dim=0)), SCENES * SAMPLES_PER_SCENE)
+
+    def test_evaluation_draws_lines_as_wide_as_in_training(self):
+        checkpoint = self.root / "checkpoint.pt"
+        weights = untrained_network().state_dict()
+        wide = {"line_width_cells": 8.0}
+        cases: list[tuple[dict[str, float], list[str], float]] = [
+            (wide, [], 8.0),
+            (wide, ["--line-width-cells", "5"], 5.0),
+            ({}, [], 5.0),  # an old checkpoint
+        ]
+        for config, options, width in cases:
+            torch.save(state_of_weights(weights, config), checkpoint)
+            arguments = ["evaluate", str(checkpoint), "--nuscenes", "tree", *options]
+            with patch("sys.argv", arguments), patch("training.evaluate.evaluate"), \
+                    patch("training.evaluate.summary", return_value=""), \
+                    patch("training.evaluate.nuscenes_batches") as read, \
+                    contextlib.redirect_stdout(io.StringIO()):
+                evaluate.main()
+            read.assert_called_once_with("tree", "", width, 1, "")
 
     def test_evaluation_reads_the_named_version(self):
         with tempfile.TemporaryDirectory() as folder:

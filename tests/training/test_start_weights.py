@@ -5,6 +5,8 @@ from __future__ import annotations
 import tempfile
 import unittest
 from pathlib import Path
+from typing import Any
+from unittest.mock import patch
 
 import onnx
 import torch
@@ -13,16 +15,22 @@ from torch import Tensor
 
 from tests.training.synthetic import SyntheticStream
 from tests.training.untrained import untrained_network
+from training import bundle
+from training.checkpoint import read_checkpoint
+from training.config import TrainingConfig
 from training.data import Batch
 from training.errors import CheckpointError
-from training.export_onnx import build_model
+from training.export_onnx import build_model, rig_statements
 from training.graph import folded_convolutions
 from training.model import real_images, real_raster
 from training.models.config import PRESETS, network_config
 from training.models.layers import ConvBn, running_statistics
 from training.models.network import BevNetwork
 from training.onnx_graph import FloatOnnxBackend
+from training.rig_ranges import RANGE_KEYS, stored_ranges
+from training.sampler_process import DriveFacts
 from training.start_weights import start_with
+from training.train import Trainer
 
 
 def outputs(net: BevNetwork, batch: Batch) -> tuple[Tensor, ...]:
@@ -100,6 +108,77 @@ class ModelFile(unittest.TestCase):
         self.file.write_bytes(b"no model")
         with self.assertRaisesRegex(CheckpointError, "unreadable as a model"):
             self.start()
+
+
+class Rigs(unittest.TestCase):
+    """The cameras that a model of a run states, which starts with the weights of another run."""
+
+    def setUp(self) -> None:
+        torch.set_num_threads(1)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        few = [SyntheticStream(0).next(1)]
+        for module in ("bundle", "train"):
+            patched = patch(f"training.{module}.measuring_batches", return_value=few)
+            patched.start()
+            self.addCleanup(patched.stop)
+
+    def run_of(self, name: str, **options: Any) -> Path:
+        """The checkpoint of a run that has not trained yet."""
+        config = TrainingConfig(run=self.folder / name, samples=8, precision="float32", **options)
+        run = Trainer(config, lambda _, first, share: SyntheticStream(first, share), [])
+        run.save()
+        return run.checkpoint_path
+
+    def model_file(self, focal_px: str, height_m: str) -> str:
+        net, path = untrained_network(), self.folder / "start.onnx"
+        rig = rig_statements() | dict(zip(RANGE_KEYS, (focal_px, height_m)))
+        model = build_model(net, folded_convolutions(net), FloatOnnxBackend(), rig=rig)
+        onnx.save(model, str(path))
+        return str(path)
+
+    def stated(self, checkpoint: Path) -> list[str | None]:
+        """The ranges of focal lengths and heights that a model of the checkpoint states."""
+        config = read_checkpoint(checkpoint)["config"]
+        statements = rig_statements(config["nuisances"], stored=stored_ranges(config))
+        return [statements.get(key) for key in RANGE_KEYS]
+
+    def test_a_run_states_those_of_the_model_file_too(self):
+        start = self.model_file("150 420", "1.2 3.2")
+        usual = self.run_of("usual", init=start, nuisances="usual")
+        self.assertEqual(self.stated(usual), ["150 420", "1.2 3.2"])
+        street = self.run_of("street", init=start)
+        self.assertEqual(self.stated(street), ["150 420", "0.6 3.2"])
+        self.assertEqual(self.stated(self.run_of("new", nuisances="usual")), [None, None])
+
+    def test_a_run_states_those_of_the_checkpoint_and_of_its_start_too(self):
+        first = self.run_of("first", init=self.model_file("150 420", "1.2 3.2"), nuisances="usual")
+        second = self.run_of("second", init=str(first), nuisances="strong")
+        self.assertEqual(self.stated(second), ["150 420", "1.2 3.2"])
+        street = self.run_of("street")
+        self.assertEqual(self.stated(self.run_of("usual", init=str(street), nuisances="usual")),
+                         ["160 343", "0.6 2.6"])
+
+    def test_a_run_states_those_of_the_drives_of_its_start(self):
+        facts = DriveFacts({}, (200.0, 600.0), (1.2, 3.2))
+        with patch("training.sampler_process.Drives.facts", return_value=facts):
+            truck = self.run_of("truck", recordings="truck", map="m", nuisances="usual")
+        car = self.run_of("car", init=str(truck), nuisances="usual")
+        self.assertEqual(self.stated(car), ["161.8 630", "1.143 3.36"])
+
+    def test_a_resumed_run_keeps_them(self):
+        start = self.model_file("150 420", "1.2 3.2")
+        self.run_of("run", init=start, nuisances="usual")
+        # As in a bundle that continues a run.
+        resumed = self.run_of("run", nuisances="usual", resume=True)
+        self.assertEqual(self.stated(resumed), ["150 420", "1.2 3.2"])
+
+    def test_a_bundle_brings_them_along(self):
+        config = TrainingConfig(init=self.model_file("150 420", "1.2 3.2"), nuisances="usual")
+        out = self.folder / "start.pt"
+        bundle.write_start_weights(config, out)
+        self.assertEqual(self.stated(out), ["150 420", "1.2 3.2"])
 
 
 if __name__ == "__main__":

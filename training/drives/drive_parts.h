@@ -43,7 +43,8 @@ Square square_at(const Eigen::Vector2d& place);
 
 /// The part of a square: an eighth of all squares is held back, another eighth is for calibration.
 /// It depends on the square alone. So a place is in the same part in every set of drives, and a
-/// network that trains on one set after another never learns from a place that is held back.
+/// network that trains on one set after another never learns from a place that is held back, as
+/// long as the origin of the map frame stays.
 DrivePart part_of(const Square& square);
 
 /// The part of a sample at this place in the map frame (m). None if the sample would show a square

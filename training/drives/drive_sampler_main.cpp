@@ -44,6 +44,7 @@ struct Options {
   uint64_t stride = 1;
   double drop_camera_probability = 0.0;
   bool skip = false;
+  bool blank = false;
   bool count = false;
   bool check = false;
 };
@@ -72,6 +73,9 @@ void add_options(CLI::App& app, Options& options) {
                  "Probability that a sample lacks one or two cameras")
       ->check(bevloc::number_between(0.0, 1.0));
   app.add_flag("--skip-bad", options.skip, "Replace a bad sample by the next good one");
+  app.add_flag("--blank-bad", options.blank,
+               "Write zeros in place of a bad sample, which then has no camera")
+      ->excludes("--skip-bad");
   app.add_flag("--count", options.count,
                "Print the number of samples of each part, and the ranges of the network cameras' "
                "focal lengths and heights, and end");
@@ -169,8 +173,13 @@ int write_samples(const Options& options, DriveSet& set, DriveSampleMaker& maker
   std::vector<uint8_t> record;
   DriveSample sample;
   for (uint64_t i = options.first_sample;; i += options.stride) {
-    if (!make_sample(options, i, order, maker, most_places, sample)) return kExitBadSamples;
-    bevloc::write_sample_record(sample.content(), record);
+    if (make_sample(options, i, order, maker, most_places, sample)) {
+      bevloc::write_sample_record(sample.content(), record);
+    } else if (options.blank) {
+      record.assign(bevloc::sample_record_size(), 0);
+    } else {
+      return kExitBadSamples;
+    }
     if (!bevloc::write_output(record, kProgram)) return kExitBadSamples;
   }
 }

@@ -25,6 +25,8 @@ namespace bevloc {
 ///   weight        float [8, 5000]        (pipeline/network/view/view_table.h)
 ///   correction    float [3]              dT = T0^-1 T: x m, y m, yaw rad
 ///   camera_mask   uint32                 bit i: camera i is present
+/// A record of zeros, which has no camera, stands for a bad sample (--blank-bad of
+/// bevloc_drive_sampler).
 std::vector<uint8_t> sample_stream_header();
 
 /// The number of bytes of one record.
