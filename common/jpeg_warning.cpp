@@ -19,7 +19,8 @@ size_t divide_up(size_t dividend, size_t divisor) {
   return (dividend + divisor - 1) / divisor;
 }
 
-/// The bytes after the last `start` and at least `size` of them, or nothing.
+/// All bytes after the last `start`. Empty if there is no `start`, or if fewer than `size` bytes
+/// follow it.
 std::string_view after_last(std::string_view bytes, std::string_view start, size_t size) {
   const size_t at = bytes.rfind(start);
   if (at == std::string_view::npos || bytes.size() - at < start.size() + size) return {};
@@ -35,7 +36,8 @@ size_t intervals_of(std::string_view head) {
   const size_t interval = restart.empty() ? 0 : two_bytes(restart, 0);
   if (interval == 0) return 1;
   constexpr size_t kBlock_px = 8;
-  size_t columns_px = kBlock_px;  // of a unit, of which an interval has a fixed number
+  // The size of a coding unit (MCU). `interval` is the number of units between two restart markers.
+  size_t columns_px = kBlock_px;
   size_t rows_px = kBlock_px;
   for (const size_t colour : {0, 1, 2}) {
     const auto factors = static_cast<uint8_t>(frame[6 + 3 * colour]);
@@ -50,7 +52,7 @@ size_t intervals_of(std::string_view head) {
 /// Whether the image has all its restart markers in order, and then the end marker.
 bool has_every_marker(std::string_view jpeg) {
   constexpr uint8_t kMarker = 0xFF;
-  constexpr uint8_t kData = 0x00;  // after 0xFF: no marker, but a byte of the image
+  constexpr uint8_t kData = 0x00;  // 0xFF 0x00 is no marker, but the byte 0xFF of the image
   constexpr uint8_t kRestart = 0xD0;
   constexpr size_t kRestartMarkers = 8;
   constexpr uint8_t kEnd = 0xD9;

@@ -8,8 +8,8 @@
 
 namespace bevloc {
 
-/// Returns the value in the middle, or the larger one of two. Reorders `values`, which must not be
-/// empty.
+/// Returns the middle one of the sorted values. If their number is even, returns the larger one of
+/// the two in the middle. Reorders `values`, which must not be empty.
 template <typename T>
 T median(std::vector<T>& values) {
   assert(!values.empty());

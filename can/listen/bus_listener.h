@@ -23,7 +23,7 @@ struct DecodedSignal {
   const DbcSignal* signal = nullptr;
   double value = 0.0;
   int64_t raw = 0;                ///< the result of raw_from()
-  bool is_available = true;       ///< one of DbcSignal::available_values()
+  bool is_available = true;       ///< whether the value is one of DbcSignal::available_values()
   std::string_view value_name{};  ///< the name that VAL_ gives; empty if it gives none
 };
 
@@ -63,7 +63,7 @@ class BusListener {
  private:
   struct Known {
     const DbcMessage* message = nullptr;       ///< a message that may be left out
-    std::vector<AvailableValues> available{};  ///< those of each of its signals
+    std::vector<AvailableValues> available{};  ///< the available values of each signal
     const Message* own = nullptr;              ///< null if it is not one of bevloc's messages
     std::map<std::string, E2eChecker, std::less<>> checkers{};  ///< by interface
   };

@@ -55,7 +55,9 @@ inline constexpr Signal kTimeSource{.name = "TimeSource",
                                     .value_names = kTimeSourceNames,
                                     .comment = "What disciplines the clock behind CaptureTime."};
 inline constexpr Signal kMapOk =
-    ok_flag("MapOk", 23, "A map is loaded and covers the position of the vehicle.");
+    ok_flag("MapOk", 23,
+            "A map is loaded and covers the position of the vehicle. OK also while that is "
+            "unknown, for example before the first pose.");
 inline constexpr std::array<Signal, 6> kCameraOk{{
     ok_flag("CameraOk_FrontLeft", 24, "Camera front_left delivers usable frames in time."),
     ok_flag("CameraOk_Front", 25, "Camera front delivers usable frames in time."),
@@ -333,8 +335,9 @@ inline constexpr Message kMessage{
     .data_id = 0x59,
     .signals = kSignals,
     .comment =
-        "Raw result of matching the newest images with the map, before the tracker weighed it. "
-        "For diagnosis: the pose already contains it."};
+        "Raw result of matching the newest images with the map, before the tracker judged it. Sent "
+        "also without a valid pose. For diagnosis only. Never add it to the pose: the pose "
+        "contains it already, or the tracker did not use it (see Why_MatchRejected)."};
 
 }  // namespace loc_correction
 

@@ -63,7 +63,7 @@ struct PoseReport {
   ProtectionLevel protection_level;  ///< sent only with a valid pose
   double forward_speed_mps = kUnknown;
   double yaw_rate_radps = kUnknown;  ///< positive counter-clockwise
-  std::optional<Se2> correction;     ///< the solver's raw dT for these frames
+  std::optional<Se2> correction;     ///< raw dT of the newest match, used by the tracker or not
 };
 
 }  // namespace bevloc::can

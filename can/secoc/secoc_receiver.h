@@ -18,7 +18,7 @@ struct SecocCounters {
   uint64_t wrong_mac = 0;          ///< epochs that were forged, damaged or replayed
   uint64_t incomplete = 0;         ///< epochs without all frames, or without authentication
   uint64_t no_freshness = 0;       ///< epochs before the freshness value of the sender is known
-  uint64_t wrong_length = 0;       ///< frames of the messages that take part in authentication
+  uint64_t wrong_length = 0;       ///< frames with a wrong length, of epochs or announcements
   uint64_t bad_announcements = 0;  ///< announcements with a wrong CRC
 };
 

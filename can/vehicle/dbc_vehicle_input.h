@@ -44,7 +44,7 @@ class DbcVehicleInput final : public VehicleDecoder {
     /// The shorter one of the latest two intervals, because one lost frame makes one of them long.
     /// After two values, it is the only one.
     Duration interval{};
-    bool available = false;  ///< one of BoundSignal::available
+    bool available = false;  ///< whether the value is one of BoundSignal::available
     bool is_new = false;     ///< no sample has used the value yet
   };
 

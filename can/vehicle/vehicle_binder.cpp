@@ -25,9 +25,12 @@ std::vector<std::string> names_in(const std::vector<Named>& all) {
 
 /// The values that a plausible signal of a quantity reaches, in the unit of the quantity.
 struct Sanity {
-  double reaches;         ///< a value that the signal reaches; not checked if 0
-  double step;            ///< the largest step
-  double negative = 0.0;  ///< a signal that reaches this has a sign; 0: either sign may be missing
+  /// The signal must reach this value, otherwise its unit is probably wrong. Not checked if 0.
+  double reaches;
+  double step;  ///< the largest step
+  /// A signal of a speed or yaw rate has a sign if it reaches this value. It is 0 for the other
+  /// quantities, whose signals may also be all positive or all negative.
+  double negative = 0.0;
 };
 Sanity sanity_of(Quantity quantity) {
   switch (quantity) {

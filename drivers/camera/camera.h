@@ -17,7 +17,7 @@ inline constexpr int kDefaultFrameBuffers = 4;
 enum class FrameEvent : uint8_t {
   kFrame,    ///< the frame was filled in
   kTimeout,  ///< no frame came in time; the caller decides when a silent camera counts as dead
-  kEnded,    ///< no frame will come any more: the recording is over
+  kEnded,    ///< no frame will come any more, as at the end of a picture folder
 };
 
 struct CameraDescription {

@@ -45,11 +45,11 @@ class StampSteps {
   };
   /// A jump that the following frames may disprove.
   struct Doubt {
-    Duration usual_lag{};  ///< before the jump
+    Duration usual_lag{};  ///< the usual lag before the jump
     Duration offset_before{};
-    Duration offset_after{};  ///< if the stamps have jumped
-    Duration least_lag{};     ///< since the jump
-    int frames = 0;           ///< since the jump
+    Duration offset_after{};  ///< the offset if the jump is real
+    Duration least_lag{};     ///< the least lag of the frames since the jump
+    int frames = 0;           ///< the number of frames since the jump
 
     bool is_disproved() const;
   };

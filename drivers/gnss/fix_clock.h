@@ -97,7 +97,9 @@ class FixClock {
   FixTime usable(Duration age, Duration sigma, Time arrival);
 
   FixClockParameters parameters_;
-  std::optional<Report> latest_;        ///< the newest one
+  /// The latest report, except for those that repeated an earlier time or came while UTC seemed to
+  /// be set back.
+  std::optional<Report> latest_;
   std::optional<Time> set_back_since_;  ///< first arrival at which UTC seemed to be set back
   std::array<Bucket, 64> buckets_{};    ///< for five minutes
   int learned_ = 0;

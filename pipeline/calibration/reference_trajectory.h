@@ -12,7 +12,7 @@
 
 namespace bevloc {
 
-/// The file of reference poses in the folder of a recording.
+/// The file of reference poses in a picture folder, or beside the files of a recording.
 inline constexpr const char* kReferenceFile = "reference.csv";
 
 /// Poses in the order of time. Immutable, and so thread-safe.

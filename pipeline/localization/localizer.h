@@ -40,7 +40,8 @@ struct LocalizerOptions {
 struct CameraImages {
   std::array<ImageView, kCameraCount> images;  ///< only those in `present` are read
   CameraMask present;
-  CameraMotions reference_from_exposure{};  ///< reference time: that of the prior
+  /// The vehicle's pose at each exposure, in the vehicle frame at the time of the prior.
+  CameraMotions reference_from_exposure{};
   /// If true, a camera that repeats its image counts as frozen, and one with parts that do not
   /// move as dirty.
   bool driving = false;

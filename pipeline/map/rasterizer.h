@@ -19,7 +19,7 @@ inline constexpr size_t kRasterSize =
     static_cast<size_t>(kRasterChannels) * kRasterGrid.rows * kRasterGrid.cols;
 
 /// Draws rasters with anti-aliasing: 0 is empty, 255 is covered. The centre of mass of a drawn line
-/// is accurate to a tenth of a cell. Of a crossing only the two longest edges are drawn, as in
+/// is accurate to a tenth of a cell. Only the two longest edges of a crossing are drawn, as in
 /// BeMapNet. One thread. Allocates nothing after a warm-up. The index must outlive it.
 class MapRasterizer {
  public:

@@ -24,10 +24,12 @@ class CameraAgreement {
 
  private:
   struct Seen {
-    SeenByCamera sums;            ///< sums that fade over some seconds of driving
-    double time_s = 0.0;          ///< driving time that the sums contain
-    double contradicted_s = 0.0;  ///< time with too low a share; a hidden side counts less
-    double absent_s = 0.0;        ///< time since the camera was last used
+    SeenByCamera sums;    ///< sums that fade over some seconds of driving
+    double time_s = 0.0;  ///< driving time that the sums contain
+    /// Time with too low a share. It counts less while the other camera of the same side is not
+    /// known to agree well with the map.
+    double contradicted_s = 0.0;
+    double absent_s = 0.0;  ///< time since the camera was last used
   };
 
   /// Whether enough was seen to judge. If so, `shares` are relative to the median camera.

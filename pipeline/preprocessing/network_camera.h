@@ -28,8 +28,8 @@ double real_pixels_per_network_pixel(const Intrinsics& real);
 CameraModel network_camera(const CameraModel& camera);
 
 /// The place in the image of `camera` that a pixel of its network image shows. Returns nothing if
-/// it lies outside of that image or on the own vehicle: such a pixel is black. `network`: the
-/// intrinsics of network_camera(camera).
+/// it lies outside of that image or on the own vehicle: such a pixel is black. `network` must be
+/// the intrinsics of network_camera(camera).
 std::optional<Eigen::Vector2d> shown_place(const CameraModel& camera, const Intrinsics& network,
                                            const Eigen::Vector2d& pixel);
 

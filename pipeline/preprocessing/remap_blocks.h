@@ -25,7 +25,8 @@ struct RemapBlocks {
   static constexpr int kMaxTaps = 13;
   static constexpr int kMaxPartTaps = 7;
 
-  /// No box may touch this many pixels at the left edge of the image, or at the other edges.
+  /// Number of outermost columns at the left edge of the image, and of outermost columns or rows at
+  /// the other edges, that the box of such a pixel must leave out.
   static constexpr int kLeftMargin_px = 2;
   static constexpr int kMargin_px = 1;
   /// A kernel may read this many pixels of a row from the first column of a box. If that passes the

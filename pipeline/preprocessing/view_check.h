@@ -15,7 +15,7 @@ double shown_share(const CameraModel& camera);
 
 /// Fails if a camera shows less than a quarter of its network image below the horizon, such as one
 /// that looks at the sky, or only at the ground beside the vehicle. Returns a warning if a camera
-/// shows less than 90 %, otherwise "". Either text begins with `file`, the rig's.
+/// shows less than 90 %, otherwise "". Either text begins with `file`, the name of the rig file.
 Result<std::string> check_views(const Rig& rig, const std::string& file);
 
 }  // namespace bevloc

@@ -16,7 +16,7 @@ namespace bevloc {
 class CellFeatures {
  public:
   CellFeatures(const BevGrid& grid, int channels, const HypothesisGrid& hypotheses);
-  /// Makes features without a margin, which no hypothesis moves.
+  /// Makes features without a margin. No hypothesis may move them.
   CellFeatures(const BevGrid& grid, int channels);
 
   /// Copies features [channels, rows, cols] in.

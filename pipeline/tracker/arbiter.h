@@ -16,7 +16,8 @@ namespace bevloc {
 /// Says which voters are wrong. The arbiter sets the first five fields. PoseEstimator sets
 /// `map_contradicts`; it also sets `gnss_contradicts` while GNSS scatters (GnssScatter),
 /// `undecided` when it starts again, and `odometry_contradicts` when the cause is that the wheels
-/// slip.
+/// slip. It clears `gnss_contradicts` and `gnss_excluded` while GNSS does not speak
+/// (Arbiter::gnss_speaks()).
 struct Verdict {
   bool match_contradicts = false;     ///< GNSS and dead reckoning agree, the match does not
   bool gnss_contradicts = false;      ///< match and dead reckoning agree, GNSS does not

@@ -14,9 +14,9 @@ const Eigen::Vector3d kExcess{2.3, 5.7, 3.3};
 /// The approximate correlation between the errors of two such matches that are less than 1.5 m
 /// apart. The measured values are 0.10, 0.14 and 0.06.
 const Eigen::Vector3d kCorrelation{0.1, 0.15, 0.06};
-/// The noise of a match decays by a factor of e over about this distance. Of eight drives at a
-/// twentieth of the usual speed, matches 0.05, 0.2 and 0.5 m apart shared 52, 33 and 17 % of the
-/// noise in their headings (`bevloc tune matches`, docs/integrity.md).
+/// The noise of a match decays by a factor of e over about this distance. In eight drives at a
+/// twentieth of the usual speed, two matches shared 52, 33 and 17 % of the noise of their headings
+/// if they were 0.05, 0.2 and 0.5 m apart (`bevloc tune matches`, docs/integrity.md).
 constexpr double kNoiseLength_m = 0.2;
 constexpr int kMostRepeats = 1000;
 

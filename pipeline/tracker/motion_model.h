@@ -96,9 +96,10 @@ struct MotionNoise {
 /// How long the correlated errors last: they decay by a factor of e over this distance or time.
 /// With 0 the errors are independent. The distances were measured on simulated drives with the
 /// shipped network. In these drives about half of the variance of a match was correlated. This part
-/// has fallen to a third after 5 m (along), 10 m (across) and 8 m (heading). One sixth of the
-/// variance across the vehicle lasts for more than 40 m. MeasurementModel::constant_error covers
-/// that sixth.
+/// fell to about a third within 5 m (along), 10 m (across) and 8 m (heading). For the heading,
+/// match_m has more, 10 m: the filter then learns less from many matches. A sixth of the variance
+/// across the vehicle stayed correlated over more than 40 m; MeasurementModel::constant_error
+/// covers it.
 struct ErrorCorrelation {
   Eigen::Vector3d match_m{5.0, 10.0, 10.0};  ///< along, across, heading
   double gnss_s = 40.0;

@@ -63,7 +63,8 @@ class PoseEstimator {
   Eigen::Vector3d protection_of(const TrackedPose& pose,
                                 const ProtectionParameters& parameters) const;
 
-  /// Forgets the pose and all verdicts; the next GNSS sample sets the pose.
+  /// Forgets the pose and what the arbiter and the matches said about it. GNSS sets the pose again
+  /// as at the start (Tracker::add_gnss()).
   void restart();
 
   /// Forgets everything but the offset between map and GNSS, because a gap in time changes neither

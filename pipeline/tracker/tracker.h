@@ -50,8 +50,10 @@ struct TrackerParameters {
   double loosened_yaw_rate_bias_sigma_radps = radians(1.0);
   double loosened_yaw_sigma_rad = radians(0.6);
 
-  double history_s = 2.0;          ///< a measurement may arrive this late
-  size_t history_capacity = 1024;  ///< events in `history_s`: odometry, GNSS, corrections; > 1
+  double history_s = 2.0;  ///< a measurement may arrive this late
+  /// The most events (odometry, GNSS, corrections) that the history keeps, even if more of them
+  /// come within `history_s`; more than 1.
+  size_t history_capacity = 1024;
   /// Prediction beyond the last odometry sample.
   double max_prediction_s = kLongestStandstillStep_s;
   double max_speed_mps = 80.0;  ///< a faster odometry sample is implausible
@@ -69,7 +71,7 @@ enum class TrackerUpdate {
   kTooOld,          ///< older than the history
   kOutOfOrder,      ///< odometry that is not newer than the last odometry sample
   kNoOdometry,      ///< the last odometry sample is too old, or there is none
-  kNotInitialised,  ///< no GNSS sample yet, or older than the first pose
+  kNotInitialised,  ///< there is no pose yet, or the measurement is older than the first one
   kNoHeading,       ///< a GNSS position whose heading is not known yet, before the first pose
   kNotFinite,       ///< a value is NaN or infinite
   kImplausible,     ///< a value is beyond its physical limit
@@ -123,7 +125,7 @@ class Tracker {
                                Trust trust = Trust::kUse);
 
   /// The pose at any time within the history, or predicted up to `max_prediction_s` past the last
-  /// odometry sample. Returns nothing outside that range or before the first GNSS sample.
+  /// odometry sample. Returns nothing outside that range or before the first pose.
   std::optional<TrackedPose> pose_at(Time time) const;
 
   const TrackerParameters& parameters() const { return parameters_; }
@@ -133,11 +135,10 @@ class Tracker {
   const PoseInnovation& latest_innovation() const { return latest_innovation_; }
 
   /// The correlated error of GNSS at the latest event. A large value means that GNSS contradicts
-  /// the pose. It is zero before the first GNSS sample.
+  /// the pose. It is zero before the first pose.
   GnssError gnss_error() const;
 
-  /// The latest estimates of the scale error and of the bias. They are zero before the first GNSS
-  /// sample.
+  /// The latest estimates of the scale error and of the bias. They are zero before the first pose.
   double speed_scale_error() const;
   double yaw_rate_bias_radps() const;
 
@@ -149,7 +150,7 @@ class Tracker {
   /// reckoning drifts: the next measurements correct them.
   void loosen_odometry();
 
-  /// Forgets the pose; the next GNSS sample sets it again.
+  /// Forgets the pose. GNSS sets it again as at the start (add_gnss()).
   void restart();
 
   /// Returns to the state after construction.

@@ -1,4 +1,4 @@
-// Groups the frames of a recording into framesets.
+// Groups the frames of a recording or a picture folder into framesets.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace bevloc::drivers {
 /// Frames of several cameras within this time are one frameset.
 inline constexpr Duration kWidestSpread = std::chrono::milliseconds(50);
 
-/// Where the frames of a frameset are in their recording.
+/// Where the frames of a frameset are among all frames of their cameras.
 struct FramesetPlace {
   Time time;                                 ///< when its earliest exposure started
   CameraMask present{};                      ///< the cameras that have a frame: at least one

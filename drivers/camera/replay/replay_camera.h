@@ -21,7 +21,7 @@ struct ReplayCameraConfig {
   int width_px = 0;
   int height_px = 0;
   /// The time that is added to every recorded time. It must be the same for all cameras of a
-  /// recording.
+  /// picture folder.
   Duration shift{0};
   Duration exposure{0};
   Duration readout{0};  ///< from start of exposure to arrival
@@ -38,7 +38,7 @@ struct RecordedFrame {
 /// Reads `directory`/frames.txt and checks that each file exists. An error names file and line.
 Result<std::vector<RecordedFrame>> load_recording(const std::filesystem::path& directory);
 
-/// The frames of all cameras of a recording. A camera without a folder has none.
+/// The frames of all cameras of a picture folder. A camera without a folder of its own has none.
 using RecordedFrames = std::array<std::vector<RecordedFrame>, kCameraCount>;
 Result<RecordedFrames> load_recordings(const std::filesystem::path& directory);
 

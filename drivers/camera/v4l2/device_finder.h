@@ -1,4 +1,4 @@
-// Finds the video node (/dev/video0) of a camera by its stable id.
+// Finds the video node (such as /dev/video0) of a camera by its stable id.
 #pragma once
 
 #include <filesystem>

@@ -19,7 +19,7 @@ struct PaintSighting {
 
   Eigen::Vector2d point_m;       ///< in the map frame, on the ground
   uint32_t element = 0;          ///< index of the element in the map
-  Eigen::Vector2d predicted_px;  ///< the point as the calibration of the search projects it
+  Eigen::Vector2d predicted_px;  ///< pixel of point_m by the camera and pose of find_paint()
   Eigen::Vector2d normal_px;     ///< unit, across the line in the image
   double pixels_per_m = 0.0;     ///< along the normal, per metre across the line on the ground
   int candidates = 0;

@@ -11,7 +11,7 @@ constexpr double kApart_m = 1.5;
 constexpr double kApart_deg = 2.0;
 
 struct Round {
-  double search_rad;  ///< largest distance between where paint and ties are expected and found
+  double search_rad;  ///< how far from the expected place paint and ties are searched, as an angle
   /// Factor on the sigma of where they are found (RefinementProblem::solve). Each solution halves
   /// it, from the first value to the last.
   double first_sigma_scale;

@@ -12,7 +12,8 @@ namespace {
 
 /// With a residual of this many sigmas, a sighting has a quarter of its weight.
 constexpr double kFar = 3.0;
-/// The mean over a drive of what differs between framesets, relative to its sigma.
+/// The unknowns of a frameset have a mean over the drive. The sigma of this mean is this share of
+/// their sigma in one frameset.
 constexpr double kMeanOfSigma = 0.3;
 /// One sigma of the body's tilt per acceleration, in radians per m/s^2.
 constexpr double kTiltPerAcceleration = 0.01;
@@ -21,8 +22,9 @@ constexpr double kReferenceDrift_s = 10.0;
 // One sigma of where paint is found: in the image, and on the ground against its line.
 constexpr double kPaintSigma_px = 0.4;
 constexpr double kPaintSigma_m = 0.01;
-// One sigma of tie points: of their pixels, of the height of the ground (of all that a camera sees,
-// and of each against them), and along the ground.
+// One sigma of tie points: of their pixels, of the height of the ground, and along the ground. That
+// of the height counts twice: for the mean height of the ground that a camera sees, and for the
+// height of each point against this mean.
 constexpr double kTieSigma_px = 0.4;
 constexpr double kTieHeightSigma_m = 0.08;
 constexpr double kTieSigma_m = 0.01;

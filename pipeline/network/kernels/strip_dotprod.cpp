@@ -55,7 +55,7 @@ template <int kRegisters, int kPixels, int kWords, int kWord = 0>
 struct DotProduct {
   static constexpr int kStepWords = 1;
   static constexpr bool kTakesSigned = true;
-  static constexpr int kPixelsTogether = 1;  ///< pixels of an instruction
+  static constexpr int kPixelsTogether = 1;  ///< pixels that one instruction computes
 
   template <int kRegisters, int kPixels>
   [[gnu::always_inline]] static void sum_tile(const KernelStrip& strip, int first) {

@@ -65,7 +65,7 @@ template <int kRegisters, int kPixels, int kSteps, int kStep = 0>
 struct MatrixProduct {
   static constexpr int kStepWords = kStepBytes / kBytesPerWord;
   static constexpr bool kTakesSigned = false;
-  static constexpr int kPixelsTogether = 2;  ///< pixels of an instruction
+  static constexpr int kPixelsTogether = 2;  ///< pixels that one instruction computes
 
   template <int kRegisters, int kPixels>
   [[gnu::always_inline]] static void sum_tile(const KernelStrip& strip, int first) {

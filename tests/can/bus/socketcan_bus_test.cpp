@@ -1,11 +1,13 @@
 #include "can/bus/socketcan_bus.h"
 
+#include <array>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
+#include <linux/sock_diag.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -122,9 +124,17 @@ class SocketCanGate : public SocketCanWire {
     put(data_frame(CAN_ERR_FLAG | classes, CAN_ERR_DLC));
     EXPECT_FALSE(bus_->receive());
   }
+
+  /// Whether the system tells a socket how much of its queue has not been sent (Linux 4.12).
+  bool says_what_is_queued() const {
+    std::array<uint32_t, SK_MEMINFO_VARS> memory{};
+    socklen_t size = sizeof(memory);
+    return getsockopt(far_end_, SOL_SOCKET, SO_MEMINFO, memory.data(), &size) == 0;
+  }
 };
 
 TEST_F(SocketCanGate, ARestartOfTheControllerAddsNoFrameToTheQueue) {
+  if (!says_what_is_queued()) GTEST_SKIP() << "there is no SO_MEMINFO, as under qemu-user";
   for (int restart = 0; restart < 3; ++restart) {
     send();
     report(CAN_ERR_BUSOFF);

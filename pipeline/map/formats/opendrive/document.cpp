@@ -221,8 +221,8 @@ class DocumentReader {
     return section;
   }
 
-  /// Reads an object. A number of a crosswalk must be right. Of another object, which the map may
-  /// not need, a wrong number is only noted.
+  /// Reads an object. A wrong number of a crosswalk is an error. A wrong number of another object
+  /// is only noted, because the map may not need the object.
   RoadObject read_object(const pugi::xml_node& node) {
     const bool was_right = !error_;
     RoadObject object = read_any_object(node);
