@@ -1,4 +1,4 @@
-// Mixes the bits of a number.
+// Computes a hash of a number.
 #pragma once
 
 #include <cstdint>

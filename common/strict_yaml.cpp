@@ -257,6 +257,19 @@ std::vector<T> YamlMap::require_list(std::string_view key, size_t count, const W
   return values;
 }
 
+template <typename T>
+std::vector<T> YamlMap::optional_list(std::string_view key, std::vector<T> fallback, size_t count,
+                                      const Wanted<T>& wanted) {
+  if (!has(key)) return fallback;
+  std::vector<T> values = require_list<T>(key, count, wanted);
+  YamlRecording* recording = document_->recording;
+  if (recording == nullptr) return values;
+  std::vector<std::string> texts;
+  for (const auto& value : fallback) texts.push_back(default_text<T>(value));
+  recording->note_default(mapping_->path_of(key), fmt::format("[{}]", fmt::join(texts, ", ")));
+  return fallback;
+}
+
 size_t YamlMap::require_word(std::string_view key, const std::vector<std::string_view>& words) {
   const Wanted<std::string> wanted = one_of({words.begin(), words.end()});
   const auto found = std::find(words.begin(), words.end(), require<std::string>(key, wanted));
@@ -359,10 +372,12 @@ Status YamlMap::finish() const {
   return {};
 }
 
-#define BEVLOC_YAML_SCALAR(T)                                             \
-  template T YamlMap::require<T>(std::string_view, const Wanted<T>&);     \
-  template T YamlMap::optional<T>(std::string_view, T, const Wanted<T>&); \
-  template std::vector<T> YamlMap::require_list<T>(std::string_view, size_t, const Wanted<T>&);
+#define BEVLOC_YAML_SCALAR(T)                                                                   \
+  template T YamlMap::require<T>(std::string_view, const Wanted<T>&);                           \
+  template T YamlMap::optional<T>(std::string_view, T, const Wanted<T>&);                       \
+  template std::vector<T> YamlMap::require_list<T>(std::string_view, size_t, const Wanted<T>&); \
+  template std::vector<T> YamlMap::optional_list<T>(std::string_view, std::vector<T>, size_t,   \
+                                                    const Wanted<T>&);
 BEVLOC_YAML_SCALAR(bool)
 BEVLOC_YAML_SCALAR(int)
 BEVLOC_YAML_SCALAR(int64_t)

@@ -91,6 +91,10 @@ class YamlMap {
   /// Reads a list of scalars. A `count` other than 0 is the required length.
   template <typename T>
   std::vector<T> require_list(std::string_view key, size_t count = 0, const Wanted<T>& wanted = {});
+  /// Reads an optional list. Returns `fallback` when the key is missing.
+  template <typename T>
+  std::vector<T> optional_list(std::string_view key, std::vector<T> fallback, size_t count = 0,
+                               const Wanted<T>& wanted = {});
 
   /// Reads a word and returns the value that it stands for:
   /// `require_choice<Yaw>("yaw", {{"literal", Yaw::kLiteral}, ...})`.

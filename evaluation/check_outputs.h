@@ -1,4 +1,4 @@
-// Keeps the commands from writing over the files that they read.
+// Keeps the commands from writing over the files that they read, and from writing a file twice.
 #pragma once
 
 #include <algorithm>

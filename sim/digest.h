@@ -1,4 +1,4 @@
-// Mixes numbers into one that stands for all of them.
+// Computes one hash of several numbers.
 #pragma once
 
 #include <bit>

@@ -45,15 +45,16 @@ Status ManualCommand::run() const {
        .see_also = see_also,
        .exit_codes = "0  good\n1  what was judged is bad\n2  wrong use or input"},
       table_of(*app_));
-  const std::string daemon =
-      man_page_of_program({.name = "bevlocd",
-                           .section = 8,
-                           .what = "localizes a vehicle in its HD map",
-                           .see_also = {"bevloc(1)", "bevloc.yaml(5)"},
-                           .exit_codes = "0  it was told to end\n2  wrong use or input\n3  it was "
-                                         "told to end, or the ignition went off, and a thread "
-                                         "hung"},
-                          daemon_table());
+  const std::string daemon = man_page_of_program(
+      {.name = "bevlocd",
+       .section = 8,
+       .what = "localizes a vehicle in its HD map",
+       .see_also = {"bevloc(1)", "bevloc.yaml(5)"},
+       .exit_codes = "0  it was told to end, or the simulated drive is over\n"
+                     "0  with --check-config: it found no mistake\n"
+                     "2  wrong use or input\n"
+                     "3  it was told to end, or the ignition went off, and a thread hung"},
+      daemon_table());
   const std::string configuration = man_page_of_schema({.name = "bevloc.yaml",
                                                         .section = 5,
                                                         .what = "configuration of bevlocd",

@@ -96,9 +96,10 @@ Json seen_from(const std::string& outer, const std::string& inner, Json content,
   return content;
 }
 
-/// Returns the condition that one of these options is taken.
+/// Returns the condition that one of these options is taken. `by_default`: a missing key takes one
+/// of them, too.
 Json taken(const std::string& outer, const std::string& decision,
-           const std::vector<std::string>& options) {
+           const std::vector<std::string>& options, bool by_default) {
   const std::string key = name_of_key(decision);
   const std::string parent = parent_of(decision);
   if (options.front() == YamlRecording::kPresent) {
@@ -108,8 +109,10 @@ Json taken(const std::string& outer, const std::string& decision,
     return {{"not", seen_from(outer, parent, {{"required", {key}}}, true)}};
   }
   Json word = options.size() == 1 ? Json{{"const", options.front()}} : Json{{"enum", options}};
-  return seen_from(outer, parent, {{"required", {key}}, {"properties", {{key, std::move(word)}}}},
-                   true);
+  Json condition = Json::object();
+  if (!by_default) condition["required"] = {key};
+  condition["properties"] = {{key, std::move(word)}};
+  return seen_from(outer, parent, std::move(condition), true);
 }
 
 class SchemaWriter {
@@ -177,6 +180,16 @@ class SchemaWriter {
     }
   }
 
+  /// Returns the condition that one of these options is taken, by a word or by default.
+  Json condition_of(const std::string& outer, const std::string& decision,
+                    const std::vector<std::string>& options) const {
+    const auto key = std::ranges::find(keys_, decision, &KeyConditions::path);
+    const std::string default_text = key == keys_.end() ? "" : key->forms().front().default_text;
+    const bool by_default = std::ranges::any_of(
+        options, [&](const std::string& option) { return Json(option).dump() == default_text; });
+    return taken(outer, decision, options, by_default);
+  }
+
   /// Returns what one state demands of the mapping around the key.
   static Json demand(const KeyConditions& key, const KeyState& state) {
     const std::string name = name_of_key(key.path);
@@ -201,7 +214,7 @@ class SchemaWriter {
       Json conditions = Json::array();
       for (size_t i = 0; i < options.size(); ++i) {
         if (!options[i].empty()) {
-          conditions.push_back(taken(outer, key.decisions[i], {options[i]}));
+          conditions.push_back(condition_of(outer, key.decisions[i], {options[i]}));
         }
       }
       add_rule(outer, {{"allOf", std::move(conditions)}}, "then", key, demand(key, state));
@@ -226,10 +239,10 @@ class SchemaWriter {
     const std::string& decision = key.decisions.front();
     for (const auto& [wanted, options] : demands) {
       if (wanted.empty()) continue;
-      add_rule(outer, taken(outer, decision, options), "then", key, wanted);
+      add_rule(outer, condition_of(outer, decision, options), "then", key, wanted);
     }
     if (allowed.size() < key.states.size()) {
-      add_rule(outer, taken(outer, decision, allowed), "else", key, demand(key, KeyState()));
+      add_rule(outer, condition_of(outer, decision, allowed), "else", key, demand(key, KeyState()));
     }
   }
 
@@ -246,7 +259,7 @@ class SchemaWriter {
       if (state) continue;
       Json conditions = Json::array();
       for (size_t i = 0; i < options.size(); ++i) {
-        conditions.push_back(taken(outer, key.decisions[i], {options[i]}));
+        conditions.push_back(condition_of(outer, key.decisions[i], {options[i]}));
       }
       const std::string name = name_of_key(key.path);
       add_rule(outer, {{"allOf", std::move(conditions)}}, "then", key,

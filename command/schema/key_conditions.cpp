@@ -41,7 +41,8 @@ std::vector<Pair> pairs_of(const ReaderPasses& reader) {
   return pairs;
 }
 
-/// Returns the states of one key, which `observe` gives, under the options that matter for it.
+/// Returns the conditions of one key: which decisions matter for it, and its state for each
+/// combination of their options. `observe` gives the state of the key in one pass.
 KeyConditions conditions_from(const ReaderPasses& reader, const std::vector<Pair>& pairs,
                               std::string path,
                               const std::function<Observation(const ReaderPass&)>& observe) {

@@ -22,15 +22,24 @@ YamlRecording record(const KeyReader& reader, const Options& options) {
   return recording;
 }
 
+bool is_rejected(const YamlRecording& recording, const std::string& path) {
+  return std::ranges::any_of(recording.rejected_keys, [&path](const std::string& ancestor) {
+    return is_below(path, ancestor);
+  });
+}
+
 std::map<std::string, YamlKey> keys_of(const YamlRecording& recording) {
   std::map<std::string, YamlKey> keys;
   for (const YamlKey& key : recording.keys) {
-    const bool rejected = std::ranges::any_of(
-        recording.rejected_keys,
-        [&key](const std::string& ancestor) { return is_below(key.path, ancestor); });
-    if (!rejected) keys.emplace(key.path, key);
+    if (!is_rejected(recording, key.path)) keys.emplace(key.path, key);
   }
   return keys;
+}
+
+/// Whether the decision is in a section that this pass rejects. Then it changes nothing in this
+/// pass, and another pass decides.
+bool has_no_effect(const YamlRecording& recording, const YamlDecision& decision) {
+  return is_rejected(recording, parent_of(decision.path));
 }
 
 /// Whether another option of this decision changes any other key.
@@ -54,7 +63,7 @@ std::map<std::string, std::vector<std::string>> find_decisions(const KeyReader& 
     open.pop_front();
     const YamlRecording base = record(reader, options);
     for (const YamlDecision& decision : base.decisions) {
-      if (!seen.insert(decision.path).second) continue;
+      if (has_no_effect(base, decision) || !seen.insert(decision.path).second) continue;
       for (const std::string& option : decision.options) {
         if (option == decision.taken) continue;
         Options changed = options;
@@ -73,6 +82,7 @@ void take(const KeyReader& reader, const Options& options, ReaderPasses& all) {
   const YamlRecording recording = record(reader, options);
   for (const YamlDecision& decision : recording.decisions) {
     if (!all.decisions.contains(decision.path) || options.contains(decision.path)) continue;
+    if (has_no_effect(recording, decision)) continue;
     for (const std::string& option : decision.options) {
       Options more = options;
       more[decision.path] = option;

@@ -1,4 +1,4 @@
-// A recording of a simulated drive in memory, with cameras whose true calibration is known.
+// The pictures of a simulated drive, in memory, of cameras whose true calibration is known.
 #pragma once
 
 #include <array>

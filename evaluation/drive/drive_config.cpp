@@ -49,9 +49,8 @@ StreetConfig read_street(std::optional<YamlMap> yaml) {
 
 std::array<Duration, kCameraCount> read_offsets(YamlMap& yaml) {
   std::array<Duration, kCameraCount> offsets{};
-  if (!yaml.has("exposure_offsets_ms")) return offsets;
-  const auto offsets_ms =
-      yaml.require_list<double>("exposure_offsets_ms", kCameraCount, between(0.0, 50.0));
+  const auto offsets_ms = yaml.optional_list<double>(
+      "exposure_offsets_ms", std::vector<double>(kCameraCount), kCameraCount, between(0.0, 50.0));
   std::ranges::transform(offsets_ms, offsets.begin(), from_milliseconds);
   return offsets;
 }
@@ -66,9 +65,9 @@ bool read_procedural_map(YamlMap& map, SimulationConfig& simulation) {
 
 sim::StopTimes read_stops(YamlMap& yaml) {
   constexpr double kLongest_s = 1e6;
-  sim::StopTimes stops;
-  if (!yaml.has("stops_s")) return stops;
-  const auto times = yaml.require_list<double>("stops_s", 2, between(0.1, kLongest_s));
+  const sim::StopTimes stops;
+  const auto times = yaml.optional_list<double>("stops_s", {stops.shortest_s, stops.longest_s}, 2,
+                                                between(0.1, kLongest_s));
   if (times[0] > times[1]) {
     yaml.reject("stops_s", fmt::format("{} to {}", times[0], times[1]), "the shortest time first");
   }

@@ -1,4 +1,4 @@
-// The reference system of a simulated recording: RTK GNSS with an IMU, and its errors.
+// The reference system of a simulated drive: RTK GNSS with an IMU, and its errors.
 #pragma once
 
 #include <cstdint>

@@ -14,13 +14,14 @@ const NamedPixelFormat* find_format(const std::string& name) {
   return found == kPixelFormats.end() ? nullptr : &*found;
 }
 
-std::vector<PixelFormat> read_formats(YamlMap& yaml) {
-  if (!yaml.has("formats")) return {PixelFormat::kNv12, PixelFormat::kYuyv, PixelFormat::kUyvy};
+std::vector<PixelFormat> read_formats(YamlMap& yaml, const std::vector<PixelFormat>& fallback) {
+  std::vector<std::string> fallback_names;
+  for (const PixelFormat format : fallback) fallback_names.emplace_back(to_string(format));
   std::vector<std::string> names;
   for (const NamedPixelFormat& format : kPixelFormats) names.emplace_back(format.name);
   const Wanted<std::string> known = one_of(names);
   std::vector<PixelFormat> formats;
-  for (const std::string& name : yaml.require_list<std::string>("formats", 0, known)) {
+  for (const std::string& name : yaml.optional_list("formats", fallback_names, 0, known)) {
     if (const NamedPixelFormat* format = find_format(name)) formats.push_back(format->format);
   }
   if (formats.empty()) yaml.reject("formats", "no known format", known.description);
@@ -47,7 +48,7 @@ CameraDevicesConfig read_camera_devices(YamlMap& cameras) {
                  "a different id for each camera");
     }
   }
-  config.formats = read_formats(cameras);
+  config.formats = read_formats(cameras, config.formats);
   config.rate_hz = cameras.optional<double>("rate_hz", config.rate_hz, between(0.1, 240.0));
   config.memory = cameras.optional_choice<CameraMemory>(
       "memory", config.memory, {{"mmap", CameraMemory::kMmap}, {"dmabuf", CameraMemory::kDmabuf}});

@@ -21,8 +21,9 @@ enum class CameraMemory : uint8_t { kMmap, kDmabuf };
 /// The settings of all six cameras. The image size comes from the calibration.
 struct CameraDevicesConfig {
   std::array<std::string, kCameraCount> ids;  ///< in the order of kCameraNames
-  std::vector<PixelFormat> formats;           ///< in order of preference
-  double rate_hz = 0.0;                       ///< 0 for the rate of the device or of its trigger
+  /// In order of preference.
+  std::vector<PixelFormat> formats{PixelFormat::kNv12, PixelFormat::kYuyv, PixelFormat::kUyvy};
+  double rate_hz = 0.0;  ///< 0 for the rate of the device or of its trigger
   CameraMemory memory = CameraMemory::kMmap;
   std::vector<drivers::ControlSetting> controls;  ///< set in this order at each start
   Duration exposure{0};                           ///< the exposure time that `controls` sets

@@ -233,11 +233,10 @@ TrackerParameters read_tracker(std::optional<YamlMap> yaml) {
   ErrorCorrelation& correlation = tracker.correlation;
   correlation.gnss_s =
       yaml->optional<double>("gnss_correlation_s", correlation.gnss_s, between(1.0, 600.0));
-  if (yaml->has("correction_correlation_m")) {
-    const auto lengths_m =
-        yaml->require_list<double>("correction_correlation_m", 3, between(0.0, 1000.0));
-    correlation.match_m = Eigen::Map<const Eigen::Vector3d>(lengths_m.data());
-  }
+  const Eigen::Vector3d& match_m = correlation.match_m;
+  const auto lengths_m = yaml->optional_list<double>(
+      "correction_correlation_m", {match_m.begin(), match_m.end()}, 3, between(0.0, 1000.0));
+  correlation.match_m = Eigen::Map<const Eigen::Vector3d>(lengths_m.data());
   tracker.gate_squared_distance = yaml->optional<double>(
       "gate_squared_distance", tracker.gate_squared_distance, between(4.0, 50.0));
   return tracker;

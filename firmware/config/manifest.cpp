@@ -41,7 +41,7 @@ Result<std::vector<ManifestEntry>> parse_manifest(std::string_view text, const s
     const std::string_view rest = line.substr(std::min(kDigits, line.size()));
     const bool has_file = rest.size() > 2 && (rest.starts_with("  ") || rest.starts_with(" *"));
     if (!has_file || !is_checksum(line.substr(0, kDigits))) {
-      // Of a wrong file, a line may have megabytes.
+      // A line of a wrong file may be megabytes long, so only its beginning is shown.
       return fail("{}:{}: found \"{}\", wanted a checksum and a file, as sha256sum writes them",
                   name, number, line.substr(0, kMostShown));
     }

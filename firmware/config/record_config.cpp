@@ -7,14 +7,11 @@ namespace bevloc::firmware {
 std::optional<RecordConfig> read_record(std::optional<YamlMap> yaml,
                                         const std::filesystem::path& folder) {
   if (!yaml) return std::nullopt;
-  const Wanted<std::string> named{"the name of a folder",
-                                  [](const std::string& name) { return !name.empty(); }};
   RecordConfig record;
-  record.directory = folder / yaml->require<std::string>("directory", named);
-  if (yaml->has("images")) {
-    record.images = yaml->require_choice<RecordedImages>(
-        "images", {{"jpeg", RecordedImages::kJpeg}, {"raw", RecordedImages::kRaw}});
-  }
+  record.directory =
+      folder / yaml->require<std::string>("directory", not_empty("the name of a folder"));
+  record.images = yaml->optional_choice<RecordedImages>(
+      "images", record.images, {{"jpeg", RecordedImages::kJpeg}, {"raw", RecordedImages::kRaw}});
   record.jpeg_quality = yaml->optional<int>("jpeg_quality", record.jpeg_quality, between(10, 100));
   record.file_length = from_seconds(
       yaml->optional<double>("file_s", to_seconds(record.file_length), between(1.0, 3600.0)));

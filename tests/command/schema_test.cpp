@@ -50,6 +50,29 @@ TEST(Schema, SaysWhatEachWordNeeds) {
   EXPECT_THAT(rules, HasSubstr(R"({"properties":{"door":{"not":{"const":"shut"}}}})"));
 }
 
+/// A reader in which the first word of `stock` rejects a section, and a word in the section decides
+/// which keys the section has.
+void read_garage(YamlMap& yaml) {
+  const bool empty = yaml.require_choice<bool>("stock", {{"none", true}, {"cars", false}});
+  auto lift = yaml.optional_map("lift");
+  if (!lift) return;
+  const bool by_motor =
+      lift->optional_choice<bool>("drive", true, {{"motor", true}, {"hand", false}});
+  if (by_motor) lift->require<double>("power_kw");
+  if (empty) yaml.reject_key("lift", "a lift without cars", "no section lift");
+}
+
+TEST(Schema, FindsADecisionInASectionThatTheFirstWordRejects) {
+  const auto schema = schema_of(read_garage, {"Garage", [](const std::string&) { return ""; }});
+  const auto& lift = schema["properties"]["lift"];
+  EXPECT_FALSE(lift.contains("required")) << lift;
+  // Without `drive` the lift has a motor, too: the condition does not demand the key.
+  EXPECT_EQ(lift["allOf"].dump(), R"([{"if":{"properties":{"drive":{"const":"motor"}}},)"
+                                  R"("then":{"required":["power_kw"]},)"
+                                  R"("else":{"properties":{"power_kw":false}}}])");
+  EXPECT_THAT(schema["allOf"].dump(), HasSubstr(R"("else":{"properties":{"lift":false}})"));
+}
+
 TEST(Schema, AReaderStillReadsFilesAsBefore) {
   auto good = YamlMap::parse("what: sells\nprice: 3\nplace: {box: 7}\n", "shop.yaml");
   read_shop(*good);
@@ -146,8 +169,9 @@ TEST(ConfigurationSchema, DescribesEachKeyAndNotAnotherOneOfItsName) {
   EXPECT_EQ(text("can.vehicle.wheel_speed.signals.vehicle"),
             "Speed of the vehicle, in place of the rear wheels.");
   EXPECT_THAT(text("can.vehicle"), HasSubstr("in place of the VEH_ messages"));
+  EXPECT_EQ(text("can.vehicle.yaw_rate.signal"), "The yaw rate.");
   EXPECT_EQ(text("can.vehicle.yaw_rate.negative.signal"),
-            "The yaw rate, or the signal of a condition.");
+            "In a condition such as valid or backward: the signal that is compared with values.");
   EXPECT_THAT(text("can.secoc.key_file"), HasSubstr("32 hexadecimal digits"));
   EXPECT_THAT(text("simulation.seed"), HasSubstr("the drive, the traffic"));
   EXPECT_THAT(text("simulation.street.seed"), HasSubstr("Determines the looks"));
@@ -159,6 +183,20 @@ TEST(ConfigurationSchema, DescribesEachKeyAndNotAnotherOneOfItsName) {
   EXPECT_THAT(text("realtime.vision.cpus"), HasSubstr("may run"));
   EXPECT_THAT(text("cameras.controls.name"), HasSubstr("The control."));
   EXPECT_EQ(schema_at(schema, "health.max_yaw_sigma_deg").at("maximum").dump(), "1.5");
+}
+
+TEST(ConfigurationSchema, HasTheDefaultsOfListsAndWords) {
+  std::optional<evaluation::SimulationConfig> simulation;
+  const auto reader = evaluation::simulation_reader(simulation);
+  const auto schema = configuration_schema(&reader);
+  const auto text = [&schema](const std::string& path) {
+    return schema_at(schema, path).value("default", nlohmann::ordered_json()).dump();
+  };
+  EXPECT_EQ(text("record.images"), R"("jpeg")");
+  EXPECT_EQ(text("cameras.formats"), R"(["nv12","yuyv","uyvy"])");
+  EXPECT_EQ(text("tracker.correction_correlation_m"), "[5,10,10]");
+  EXPECT_EQ(text("simulation.stops_s"), "[2,7]");
+  EXPECT_EQ(text("simulation.exposure_offsets_ms"), "[0,0,0,0,0,0]");
 }
 
 TEST(RigSchema, DescribesEveryKeyOfACamera) {

@@ -148,10 +148,13 @@ class ProgramTest(unittest.TestCase):
             self.assertEqual(run("manual", "--out", folder).returncode, 0)
             pages = sorted(page.name for page in Path(folder).iterdir())
             self.assertEqual(pages, ["bevloc.1", "bevloc.yaml.5", "bevlocd.8"])
-            self.assertRegex(
-                (Path(folder) / "bevlocd.8").read_text(),
-                r"3 +it was told to end, or the ignition went off, and a thread hung",
-            )
+            daemon = (Path(folder) / "bevlocd.8").read_text()
+            for line in (
+                "0  it was told to end, or the simulated drive is over",
+                r"0  with \-\-check\-config: it found no mistake",
+                "3  it was told to end, or the ignition went off, and a thread hung",
+            ):
+                self.assertIn(line, daemon)
             for page in pages:
                 command = ["groff", "-man", "-ww", "-Wbreak", "-Tutf8", page]
                 groff = subprocess.run(command, capture_output=True, text=True, cwd=folder)

@@ -87,6 +87,33 @@ simulation:
     - {kind: gnss_outage}
 """
 
+RECEIVER = """
+cameras: {driver: replay, recording: pictures}
+calibration: {rig: rig.yaml}
+map: {file: town.osm}
+model: {file: nano.onnx}
+can: {driver: socketcan, interface: can0}
+gnss:
+  driver: gpsd
+  address: 127.0.0.1
+  port: 2948
+  device: /dev/ttyACM0
+  antenna_m: [1.35, 0]
+  timing: system_clock
+  max_age_ms: 900
+  min_sigma_m: 1
+clock: {source: ntp, max_error_ms: 5}
+record:
+  directory: recordings
+  images: raw
+  jpeg_quality: 90
+  file_s: 30
+  max_mb: 1000
+  max_age_h: 24
+  black_box_files: 10
+live: {address: 127.0.0.1, port: 8081, open_to_network: true}
+"""
+
 Place = tuple[Any, ...]
 
 
@@ -133,6 +160,39 @@ def wrong_versions(document: Any) -> Iterator[tuple[str, Any]]:
             yield f"{place}: one key more", changed(document, (*place, "no_such_key"), 1)
 
 
+def defaults_of_page() -> Iterator[tuple[str, Any]]:
+    """The keys of docs/configuration.md with each default that is a value and no description."""
+    headings: list[str] = []
+    for line in (ROOT / "docs/configuration.md").read_text().splitlines():
+        cells = [cell.strip() for cell in line.split("|")[1:-1]]
+        if line.startswith("| key |"):
+            headings = cells
+        if not line.startswith("| `"):
+            continue
+        key = cells[0].strip("`").rpartition(".")[2]
+        for heading, cell in zip(headings, cells, strict=True):
+            if heading.startswith("default") and re.fullmatch(r"`.*`|-?[0-9.]+|\[.*\]", cell):
+                yield key, yaml.safe_load(cell.strip("`"))
+
+
+def defaults_of_schema(schema: Any) -> Iterator[tuple[str, Any]]:
+    """The keys of a schema with their defaults."""
+    for key, inner in schema.get("properties", {}).items():
+        if "default" in inner:
+            yield key, inner["default"]
+        yield from defaults_of_schema(inner.get("items", inner))
+
+
+def is_default(key: str, value: Any, defaults: list[tuple[str, Any]]) -> bool:
+    """Whether the key has this default, to the digits that the page shows."""
+    digits = len(str(value).partition(".")[2]) if isinstance(value, float) else 12
+    same = [default for name, default in defaults if name == key]
+    return any(
+        round(default, digits) == value if isinstance(default, float) else default == value
+        for default in same
+    )
+
+
 # What a schema cannot say: values that contradict each other, or that only a program understands.
 BEYOND = re.compile(
     r"less than tolerance_ms|the id of another camera|more than a quarter of the range"
@@ -141,6 +201,7 @@ BEYOND = re.compile(
     r"|a CPU listed twice|less than from_s|the same camera|the shortest time first"
     r"|wanted a whole number|a persistent camera id|quaternion|corners|cameras\.\w+\.vehicle_from"
     r"|cameras\.\w+\.f[xy]_px|distortion|rig cannot|cpus\[0\]|image_size_px|c[xy]_px|own_body_px"
+    r"|an IP address in numbers|the path of a receiver|not more than latency_ms"
 )
 
 
@@ -200,12 +261,23 @@ class SchemaTest(unittest.TestCase):
     def test_simulation(self) -> None:
         self.compare("config", FAULTS)
 
+    def test_gnss_receiver(self) -> None:
+        self.compare("config", RECEIVER)
+
+    def test_fixes_by_arrival(self) -> None:
+        receiver = yaml.safe_load(RECEIVER)
+        receiver["gnss"].update(timing="arrival", latency_ms=90, latency_sigma_ms=20)
+        self.compare("config", json.dumps(receiver))
+        del receiver["gnss"]["timing"]
+        self.compare("config", json.dumps(receiver))
+
     def test_rig(self) -> None:
         self.compare("rig", (ROOT / "config/rig_fisheye.yaml").read_text())
 
     def test_keys_that_exclude_each_other(self) -> None:
         demo = yaml.safe_load(FAULTS)
         real = yaml.safe_load(REAL)
+        receiver = yaml.safe_load(RECEIVER)
         for document in (
             {**demo, "map": {"procedural_seed": 7, "file": "a.osm"}},
             {**demo, "map": {}},
@@ -214,10 +286,19 @@ class SchemaTest(unittest.TestCase):
             {**real, "map": {"procedural_seed": 7}},
             {**real, "can": {"driver": "mock"}},
             {**real, "simulation": demo["simulation"]},
+            {**receiver, "gnss": {**receiver["gnss"], "latency_ms": 90}},
+            {**receiver, "cameras": demo["cameras"], "simulation": demo["simulation"]},
         ):
             self.assertFalse(self.accepts("config", document), document)
             self.assertNotEqual(self.verdicts("config", [document]), [""], document)
         self.assertTrue(self.accepts("config", {**demo, "map": {"file": "a.osm"}}))
+
+    def test_has_every_default_of_the_page(self) -> None:
+        defaults = list(defaults_of_schema(self.schemas["config"]))
+        on_page = list(defaults_of_page())
+        self.assertGreater(len(on_page), 60)
+        missing = [row for row in on_page if not is_default(*row, defaults)]
+        self.assertEqual(missing, [])
 
     def test_vehicle_has_no_simulator(self) -> None:
         self.assertTrue(self.accepts("vehicle", yaml.safe_load(REAL)))

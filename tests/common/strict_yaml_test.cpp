@@ -156,6 +156,27 @@ TEST(StrictYaml, ChecksListsItemByItem) {
   EXPECT_THAT(finish_error(limited), HasSubstr("list[1]: found -2"));
 }
 
+TEST(StrictYaml, OptionalListsFallBackOnlyWhenTheyAreNotThere) {
+  YamlMap yaml = parsed("there: [3, 4]\n");
+  EXPECT_THAT(yaml.optional_list<int>("there", {1, 2}, 2), ElementsAre(3, 4));
+  EXPECT_THAT(yaml.optional_list<int>("absent", {1, 2}, 2), ElementsAre(1, 2));
+  EXPECT_TRUE(yaml.finish().has_value());
+
+  YamlMap wrong = parsed("there: [3]\n");
+  EXPECT_EQ(wrong.optional_list<int>("there", {1, 2}, 2).size(), 2U);
+  EXPECT_EQ(finish_error(wrong), "t.yaml:1: there: found a list of 1, wanted a list of 2");
+}
+
+TEST(StrictYaml, ARecordingKeepsTheDefaultOfAList) {
+  YamlRecording recording;
+  YamlMap yaml = YamlMap::record(recording);
+  EXPECT_THAT(yaml.optional_list<double>("list", {5.0, 0.1}, 2), ElementsAre(5.0, 0.1));
+  ASSERT_EQ(recording.keys.size(), 1U);
+  EXPECT_TRUE(recording.keys[0].is_list);
+  EXPECT_FALSE(recording.keys[0].required);
+  EXPECT_EQ(recording.keys[0].default_text, "[5, 0.1]");
+}
+
 TEST(StrictYaml, ReadsListsOfMappings) {
   YamlMap yaml = parsed("cameras:\n  - name: a\n  - name: b\n    extra: 1\n");
   std::vector<std::string> names;
