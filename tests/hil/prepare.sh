@@ -2,6 +2,7 @@
 # Sourced by script/hil and script/try-image: what the lab needs on the host.
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/bevloc/hil
 build=build/hil
+umask 022  # users of the guest read what is copied there, whatever umask this user has
 
 skip() {
   echo "$(basename "$0"): skipped: $1" >&2
@@ -18,8 +19,16 @@ require_host() {
   [[ $codename == bookworm ]] || skip "the lab needs Debian 12, whose packages it uses"
 }
 
+# need_yaml: what --help and --list need. It needs no root where Python can read YAML files already.
+need_yaml() {
+  /usr/bin/python3 -c 'import yaml' 2>/dev/null || script/bootstrap hil
+}
+
 # build_programs TARGET...: builds these programs of the lab.
 build_programs() {
+  # The owner of the tree builds and drives in these folders, too.
+  mkdir -p build out
+  chown --reference=. build out
   export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
   cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER_LAUNCHER=ccache \
     -DBEVLOC_HIL=ON >/dev/null

@@ -40,7 +40,10 @@ class Agent:
 
     def run(self, script: str, timeout_s: float = TIMEOUT_S) -> Reply:
         data = script.encode()
-        self._socket.sendall(f"{len(data)}\n".encode() + data)
+        try:
+            self._socket.sendall(f"{len(data)}\n".encode() + data)
+        except OSError as error:
+            raise _connection_lost(str(error)) from None
         line = self._read_line(timeout_s)
         if line == _READY:
             raise GuestRestarted("guest: restarted in a script")
@@ -75,9 +78,15 @@ class Agent:
             chunk = self._socket.recv(65536)
         except TimeoutError:
             raise LabError("guest: no answer in time; see console.log") from None
+        except OSError as error:
+            raise _connection_lost(str(error)) from None
         if not chunk:
-            raise LabError("guest: closed the connection; see console.log and qemu.log")
+            raise _connection_lost("closed the connection")
         self._received += chunk
+
+
+def _connection_lost(reason: str) -> LabError:
+    return LabError(f"guest: {reason}; see console.log and qemu.log")
 
 
 def connect_unix(path: str, timeout_s: float = 20.0) -> socket.socket:

@@ -22,6 +22,8 @@ _IN_THE_LAB = {
 }
 # A virtual CAN interface has no bit rate and is up already.
 _NOT_IN_THE_LAB = "ip link set can0"
+# The scenario continues for so long after TRACKING.
+_TRACKING_S = 5
 # The emulated machine is slow.
 _SLOW = ("rate_hz", "tolerance_ms", "wait_ms", "formats")
 
@@ -60,9 +62,9 @@ def bring_up(run: Run) -> Outcome:
         run.agent.check(f"cd /root/new_user && {command}")
     run.start_vehicle()
     tracking = run.wait_for("StatusText", "TRACKING", TRACKING_TIMEOUT_S)
-    run.agent.check("sleep 5")
+    run.agent.check(f"sleep {_TRACKING_S}")
     log = run.finish_log()
-    passed, judged = judge_poses(errors_of(run, log))
+    passed, judged = judge_poses(errors_of(run, log), _TRACKING_S)
     return Outcome(
         injected=f"the {len(commands)} commands of {PAGE}",
         seen=f"{' -> '.join(log.states())}; {judged}",

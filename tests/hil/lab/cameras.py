@@ -25,14 +25,21 @@ class Cameras:
 
     def command(self, line: str) -> str:
         """Sends a command of camera_bench.h, such as `unplug 2`, and returns the answer."""
-        self._socket.sendall(f"{line}\n".encode())
-        answer = self._answers.readline().strip()
-        if answer.startswith("error"):
-            raise LabError(f"cameras: {answer}")
+        try:
+            self._socket.sendall(f"{line}\n".encode())
+            answer = self._answers.readline().strip()
+        except OSError as error:
+            raise LabError(f"cameras: {error}, wanted an answer to '{line}'") from None
+        if not answer or answer.startswith("error"):
+            raise LabError(f"cameras: {answer or f'ended, wanted an answer to {line!r}'}")
         return answer
 
     def counts(self) -> dict:
         return json.loads(self.command("counts"))
+
+    def sent_by(self, name: str) -> int:
+        """Returns how many frames a camera has sent."""
+        return self.counts()["cameras"][name]["sent"]
 
     def close(self) -> None:
         self._process.terminate()

@@ -54,18 +54,20 @@ def _start_settled(run: Run) -> str:
 
 def can_down(run: Run) -> Outcome:
     pid = _start_settled(run)
-    run.agent.check("ip link set vcan0 down; sleep 3")
+    down_s = float(run.agent.check("set -e; ip link set vcan0 down; date +%s.%N; sleep 3"))
     up_s = run.wall_s()
     run.agent.check(f"ip link set vcan0 up; sleep {SETTLE_S}")
     same_daemon = run.show("MainPID") == pid
     log = run.finish_log()
     back_s = log.localizer_after(up_s)
     recovery_s = back_s - up_s if back_s else None
+    silent = log.localizer_after(down_s) == back_s
     return Outcome(
         injected="vcan0 down for 3 s",
-        seen="the same daemon sends again" if same_daemon else "another daemon sends",
+        seen=("the same daemon sends again" if same_daemon else "another daemon sends")
+        + ("" if silent else ", but it also sent MEANWHILE"),
         recovery_s=recovery_s,
-        passed=same_daemon and recovery_s is not None and recovery_s < BACK_ON_BUS_S,
+        passed=same_daemon and silent and recovery_s is not None and recovery_s < BACK_ON_BUS_S,
     )
 
 
@@ -87,7 +89,10 @@ def can_flood(run: Run) -> Outcome:
         injected=f"5 s of foreign and forged frames ({log.damaged} forged ones seen)",
         seen=f"{len(during)} status frames meanwhile, {'same' if same_daemon else 'new'} daemon",
         recovery_s=after_s - end_s if after_s else None,
-        passed=bool(during) and same_daemon and after_s is not None and log.damaged > 0,
+        passed=log.longest_silence_s(begin_s, end_s) < BACK_ON_BUS_S
+        and same_daemon
+        and after_s is not None
+        and log.damaged > 0,
     )
 
 

@@ -6,22 +6,14 @@ import tempfile
 import unittest
 
 from tests.hil.lab import dbc
-from tests.hil.lab.judge import BusLog, Pose, Truth, quantile
+from tests.hil.lab.bus_frames import protected
+from tests.hil.lab.drives import judge_poses
+from tests.hil.lab.judge import BusLog, Pose, PoseError, Truth, quantile
 from tests.hil.lab.outcome import Outcome, table
 
 DBC = pathlib.Path(__file__).parents[3] / "can/bevloc.dbc"
 # The example frame of docs/can.md: intact, all signals not available.
 NOT_AVAILABLE = "D700000080000080"
-
-
-def _protected(message: dbc.Message, **raw: int) -> str:
-    word = 0
-    for name, value in raw.items():
-        signal = message.signals[name]
-        word |= (value & ((1 << signal.bits) - 1)) << signal.start
-    data = bytearray(word.to_bytes(message.length, "little"))
-    data[0] = dbc._crc8_h2f(bytes(data[1:]) + bytes([message.data_id]))
-    return data.hex().upper()
 
 
 class DbcTest(unittest.TestCase):
@@ -62,14 +54,14 @@ class BusLogTest(unittest.TestCase):
         return BusLog(self.log, DBC)
 
     def status(self, state: int, **more: int) -> str:
-        return "500#" + _protected(self.messages[0x500], State=state, **more)
+        return "500#" + protected(self.messages[0x500], State=state, **more)
 
     def position(self, epoch: int, east: int) -> str:
         values = {"EPOCH": epoch, "LocalEast": east, "LocalNorth": 0}
-        return "504#" + _protected(self.messages[0x504], **values)
+        return "504#" + protected(self.messages[0x504], **values)
 
     def heading(self, epoch: int, raw: int) -> str:
-        return "505#" + _protected(self.messages[0x505], EPOCH=epoch, Heading=raw)
+        return "505#" + protected(self.messages[0x505], EPOCH=epoch, Heading=raw)
 
     def test_counts_damaged_frames_and_ignores_foreign_ones(self) -> None:
         log = self.read("(1.0) vcan0 504#D700000080000081", "(1.1) vcan0 7A0#00", "nonsense")
@@ -131,6 +123,23 @@ class TruthTest(unittest.TestCase):
     def test_gives_no_error_outside_the_drive(self) -> None:
         self.assertIsNone(self.truth.error_of(Pose(99.9, 0.0, 0.0, 0.0), 100.0))
         self.assertIsNone(self.truth.error_of(Pose(101.1, 0.0, 0.0, 0.0), 100.0))
+
+
+class PosesTest(unittest.TestCase):
+    GOOD = PoseError(0.1, 0.1, 0.1)
+
+    def test_wants_valid_poses_most_of_the_time(self) -> None:
+        # 100 Hz for 20 s, of which nine tenths must be valid.
+        self.assertTrue(judge_poses([self.GOOD] * 1800, 20.0)[0])
+        passed, text = judge_poses([self.GOOD] * 1799, 20.0)
+        self.assertFalse(passed)
+        self.assertIn("1799 valid poses (wanted 1800)", text)
+        self.assertFalse(judge_poses([], 20.0)[0])
+
+    def test_wants_small_errors_and_none_beyond_the_alert_limit(self) -> None:
+        one_wrong = [self.GOOD] * 1800 + [PoseError(0.1, 0.6, 0.1)]
+        self.assertFalse(judge_poses(one_wrong, 20.0)[0])
+        self.assertFalse(judge_poses([PoseError(0.1, 0.3, 0.1)] * 1800, 20.0)[0])
 
 
 class ReportTest(unittest.TestCase):

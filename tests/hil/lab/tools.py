@@ -6,7 +6,7 @@ import statistics
 import yaml
 
 from tests.hil.lab import dbc
-from tests.hil.lab.bench import USB_CONFIG, Run, chip_of
+from tests.hil.lab.bench import USB_CONFIG, Run, chip_of, last_match
 from tests.hil.lab.cameras import NAMES
 from tests.hil.lab.devices import device_of
 from tests.hil.lab.outcome import Outcome
@@ -94,7 +94,7 @@ def _bus(run: Run, journal: str) -> tuple[str, list[str]]:
         for who in ("LOC_", "VEH_")
     )
     for who, pattern, seen in (("sent", _CAN_SENT, sent), ("received", _CAN_RECEIVED, received)):
-        said = pattern.search(journal)
+        said = last_match(pattern, journal)
         if not said or int(said[1]) != seen:
             problems.append(f"candump: {seen} frames {who}, the daemon reports {said and said[1]}")
     counts = f"{sent} sent, {received} received"
@@ -105,7 +105,7 @@ def _trigger(run: Run, journal: str, rate_hz: float) -> tuple[str, list[str]]:
     """Compares the edges of the line `probe`, which follows the trigger, with the daemon's log."""
     edges = [line.split() for line in (run.folder / "gpiomon.log").read_text().splitlines()]
     rising = [int(s) + 1e-9 * int(ns) for kind, s, ns in edges if kind == "1"]
-    said = _PULSES.search(journal)
+    said = last_match(_PULSES, journal)
     problems = []
     # The counts must be equal: the wire runs before the daemon starts, and the daemon stops the
     # trigger before it logs the count.

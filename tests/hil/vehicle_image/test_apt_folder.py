@@ -1,4 +1,4 @@
-"""Tests that a vehicle whose clock is behind can read the repository of an update."""
+"""Tests that a vehicle can read the repository of an update, also if its clock is behind."""
 
 import datetime
 import email.utils
@@ -10,13 +10,20 @@ import tempfile
 import unittest
 
 _PROGRAM = pathlib.Path("vehicle_image/files/usr/libexec/bevloc-image/make-apt-folder").resolve()
+_PACKAGES = pathlib.Path("vehicle_image/packages.txt").resolve()
 _SIGNER = "lab@localhost"
 _MISSING = [tool for tool in ("apt-ftparchive", "apt-get", "gpg") if shutil.which(tool) is None]
 # This vehicle had its last right time when its image was made.
 _BEHIND = datetime.timedelta(days=1000)
 
 
-@unittest.skipIf(_MISSING, f"found no {', '.join(_MISSING)} (script/packages-image.txt)")
+class Packages(unittest.TestCase):
+    def test_of_the_image_have_certificates_for_https(self) -> None:
+        names = _PACKAGES.read_text(encoding="utf-8").splitlines()
+        self.assertIn("ca-certificates", names)
+
+
+@unittest.skipIf(_MISSING, f"found no {', '.join(_MISSING)} (script/packages-python.txt)")
 class AptFolder(unittest.TestCase):
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()

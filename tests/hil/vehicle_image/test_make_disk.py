@@ -44,7 +44,7 @@ class DataPartition(unittest.TestCase):
 
 
 @unittest.skipIf(os.geteuid() != 0, "only root may give files to another user")
-@unittest.skipIf(_MISSING, f"found no {', '.join(_MISSING)} (script/packages-image.txt)")
+@unittest.skipIf(_MISSING, f"found no {', '.join(_MISSING)} (script/packages-python.txt)")
 class MakeDisk(unittest.TestCase):
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
