@@ -10,7 +10,7 @@
 namespace bevloc::firmware {
 
 /// Fails if a camera shows too little for the network, and logs the warning if it shows less than
-/// it should (check_views()). `file` is the file of the rig, for messages.
+/// it should (check_views()). Messages name `file`, the rig file.
 Status check_shown(const Rig& rig, const std::filesystem::path& file);
 
 /// Checks on this machine everything that the configuration names (`bevlocd --check-config`): reads

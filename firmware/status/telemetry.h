@@ -30,8 +30,8 @@ struct HealthCheck {
   std::string reason;  ///< one line with the state, what is wrong and what to do
 };
 
-/// The check is good while the pose is valid, in standby, and during a start as long as nobody has
-/// to help. It is not good while a thread hangs, in LOST and FAULT, and when a pose that was valid
+/// The check is good while the pose is valid, in standby, and during a start if nobody needs to
+/// act. It is not good while a thread hangs, in LOST and FAULT, and when a pose that was valid
 /// has not been so for ten seconds. Before the pose is valid, it is not good when an input is
 /// missing or wrong, or when the map does not cover the place or does not fit it. It is also not
 /// good when `age`, the time since the supervisor handed the value over, is longer than two

@@ -1,4 +1,5 @@
-// Tests what the vision stage tells with the motion of a prior, and without a prior.
+// Tests that observers get the motions of the prior, and that no camera has a fault without a
+// prior.
 #include <gtest/gtest.h>
 
 #include "tests/firmware/stages/vision_stage_fixture.h"
