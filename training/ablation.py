@@ -25,10 +25,10 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
+from tooling.markdown import row, table
+from tooling.option_types import positive
 from training.losses import sample_1d
-from training.markdown import row, table
 from training.native import address, library
-from training.option_types import positive
 from training.solver import DEFINITION, Posterior, YawSignature, posterior_mean, yaw_scores
 from training.solvers.axis import lateral_scores, longitudinal_scores
 from training.solvers.definition import split_shift

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import torch
 
+from tooling.errors import run_program
 from training.checkpoint import new_checkpoint, state_of_weights, write_checkpoint
 from training.config import TrainingConfig
-from training.errors import run_program
 from training.models.config import network_config
 from training.models.network import BevNetwork
 from training.rig_ranges import stated_ranges, to_store

@@ -2,9 +2,9 @@
 
     script/bundle-training --out DIR [--init FILE | --run RUN] [--photos DIR] [OPTIONS]
 
-The folder holds training's Python, the sampler with its libraries and the loader of this machine,
-and the weights to start with. OPTIONS are those of training.train; the bundle's program `train`
-uses them. See training/README.md.
+The folder holds the Python of training, the sampler with its libraries and the loader of this
+machine, and the weights to start with. OPTIONS are those of training.train; the bundle's program
+`train` uses them. See training/README.md.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ from pathlib import Path
 
 import torch
 
+from tooling.errors import run_program
 from training.bundle_train import CONTINUES, has_budget, without_budget
 from training.checkpoint import network_of, read_checkpoint, state_of_weights
 from training.config import TrainingConfig
-from training.errors import TrainingError, run_program
+from training.errors import TrainingError
 from training.models.config import network_config
 from training.models.network import BevNetwork
 from training.options import parse_config
@@ -38,7 +39,7 @@ from training.train import measuring_batches
 LIMIT_BYTES = 60 * 2**20
 CHECKPOINT_BYTES = 16 * 2**20  # the largest file that other machines return
 _BYTES_PER_WEIGHT = 16  # of a checkpoint: weights, average, two moments of the gradient
-PACKAGES = ("training", "training/models", "training/solvers", "training/nuscenes")
+PACKAGES = ("tooling", "training", "training/models", "training/solvers", "training/nuscenes")
 ARCHIVE = ".tar.gz"
 # OpenCV loads BLAS and LAPACK, which the sampler does not call. Where OpenBLAS stands in for them,
 # it would add 35 MB to the bundle.

@@ -13,8 +13,9 @@ from typing import Any
 
 import torch
 
+from tooling.errors import run_program
 from training.compact import unpack
-from training.errors import CheckpointError, TrainingError, run_program
+from training.errors import CheckpointError, TrainingError
 from training.models.config import ModelConfig, network_config
 from training.models.network import BevNetwork
 

@@ -13,11 +13,11 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from training.errors import run_program
+from tooling.errors import run_program
+from tooling.markdown import table
+from tooling.option_types import positive, writable
 from training.evaluate import AXES, CLASSES, evaluate_native
 from training.export_onnx import SHIPPED_SOLVER
-from training.markdown import table
-from training.option_types import positive, writable
 from training.options import add_drive_options, drives_of
 from training.runtime import NativeNetwork
 from training.sampler_process import Drives

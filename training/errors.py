@@ -1,13 +1,12 @@
-"""Errors that end a program with a one-line message to the user."""
+"""Errors of training."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
+from tooling.errors import UserError
 
 
-class TrainingError(Exception):
-    """Wrong input: the program cannot continue."""
+class TrainingError(UserError):
+    """Wrong input: training cannot continue."""
 
 
 class CheckpointError(TrainingError):
@@ -16,23 +15,3 @@ class CheckpointError(TrainingError):
 
 class NotFiniteError(TrainingError):
     """A loss, gradient or weight is infinite or NaN."""
-
-
-class MarksError(TrainingError, ValueError):
-    """A document lacks the marks between which a program writes."""
-
-
-def run_program(main: Callable[[], None]) -> None:
-    """Runs `main`. On a TrainingError, or if the system refuses a file, prints a message of one
-    line without a traceback and exits with 1."""
-    try:
-        main()
-    except TrainingError as error:
-        sys.exit(str(error))
-    except OSError as error:
-        if error.filename is None:  # not a file that the user named
-            raise
-        sys.exit(
-            f"{error.filename}: found no way to use it ({error.strerror}), wanted a usable file or "
-            "folder"
-        )

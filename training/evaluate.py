@@ -20,14 +20,14 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+from tooling.errors import run_program
+from tooling.option_types import above_zero, positive
 from training.checkpoint import load_network, read_checkpoint
 from training.config import TrainingConfig
 from training.data import Batch
-from training.errors import run_program
 from training.losses import intersection_over_union, pose_losses
 from training.model import real_images, real_raster
 from training.models.network import BevNetwork
-from training.option_types import above_zero, positive
 from training.report import Results, write_results
 from training.runtime import NativeNetwork, NativeSolver
 from training.solver import PoseSolvers, Solution, standardise

@@ -26,10 +26,12 @@ import torch
 import yaml
 from onnx import TensorProto, helper
 
+from tooling.errors import run_program
+from tooling.option_types import positive
 from training.checkpoint import load_network, nuisances_of, read_checkpoint
 from training.config import CALIBRATION_SEEDS, FIRST_TRAINING_SEED, TrainingConfig
 from training.data import Batch, SamplerStream
-from training.errors import TrainingError, run_program
+from training.errors import TrainingError
 from training.fit_scales import ResultScales, fit_scales, fit_score_scale, fit_sigma_scale
 from training.graph import FoldedConv, Walk, check_exportable, folded_convolutions
 from training.model import (
@@ -43,7 +45,6 @@ from training.model import (
 )
 from training.models.network import BevNetwork
 from training.onnx_graph import MASK_OUTPUT, FloatOnnxBackend, Int8OnnxBackend
-from training.option_types import positive
 from training.options import DRIVE_FIELDS, add_drive_options, drives_of, option_name
 from training.quantize import Quantization, input_scales, int8_inference, quantize
 from training.rig_ranges import RANGE_KEYS, RigRanges, drawn_ranges, stored_ranges

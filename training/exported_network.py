@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 
-from training.errors import run_program
+from tooling.errors import run_program
 from training.graph import check_exportable
 from training.models.config import network_config
 from training.options import parse_config

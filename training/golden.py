@@ -17,10 +17,11 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from tooling.errors import run_program
 from training.checkpoint import load_network
 from training.config import FIRST_GOLDEN_SEED
 from training.data import Batch, SamplerStream
-from training.errors import TrainingError, run_program
+from training.errors import TrainingError
 from training.evaluate import Inference, float_inference
 from training.export_onnx import QUANTIZATION_FILE, SOLVERS_FILE
 from training.golden_solver import write_solver_vectors

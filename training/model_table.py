@@ -14,8 +14,8 @@ from pathlib import Path
 
 import torch
 
-from training.errors import run_program
-from training.markdown import row, table, write_between_marks
+from tooling.errors import run_program
+from tooling.markdown import row, table, write_between_marks
 from training.models.config import PRESETS, VIEWS, ModelConfig
 from training.models.cost import Cost, cost_of, deployed_outputs, sample_inputs
 from training.models.layers import channels_last

@@ -16,11 +16,12 @@ import numpy as np
 import yaml
 from PIL import Image
 
+from tooling.errors import run_program
+from tooling.markdown import row, table
+from tooling.option_types import positive
 from training.data import SamplerStream
-from training.errors import TrainingError, run_program
-from training.markdown import row, table
+from training.errors import TrainingError
 from training.model import IMAGE_COLS, IMAGE_ROWS
-from training.option_types import positive
 
 SEED = 1_700_000
 HORIZON_ROW = 14.0  # pipeline/preprocessing/network_camera.h

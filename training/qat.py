@@ -16,6 +16,8 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
+from tooling.errors import run_program
+from tooling.option_types import above_zero, positive
 from training.checkpoint import (
     load_network,
     new_checkpoint,
@@ -26,12 +28,11 @@ from training.checkpoint import (
 )
 from training.config import FIRST_TRAINING_SEED, QAT_SEEDS
 from training.data import Batch, SamplerStream, Stream
-from training.errors import NotFiniteError, run_program
+from training.errors import NotFiniteError
 from training.export_onnx import calibration_batches, check_simulated
 from training.fake_quantization import FakeQuantized
 from training.losses import pose_losses, semantic_loss
 from training.model import real_raster
-from training.option_types import above_zero, positive
 from training.quantize import quantize
 from training.solver import PoseSolvers, standardise
 

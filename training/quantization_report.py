@@ -16,15 +16,15 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+from tooling.errors import run_program
+from tooling.markdown import table, write_between_marks
+from tooling.option_types import positive
 from training.checkpoint import load_network, nuisances_of, read_checkpoint
 from training.data import Batch
-from training.errors import run_program
 from training.evaluate import AXES, Inference
 from training.export_onnx import calibration_batches, check_simulated, quantization_of
 from training.layer_errors import LayerError, layer_errors
-from training.markdown import table, write_between_marks
 from training.models.network import BevNetwork
-from training.option_types import positive
 from training.quantize import FloatBackend, Quantization, int8_inference, run
 from training.solver import PoseSolvers
 from training.sources import BATCH, simulator_batches

@@ -7,7 +7,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from training.markdown import table, write_between_marks
+from tooling.markdown import table, write_between_marks
 
 BEGIN, END = "<!-- results: written by training.evaluate -->", "<!-- end of results -->"
 _SHIPPED = "nano"  # its card is the folder's README.md

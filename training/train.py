@@ -21,13 +21,14 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
+from tooling.errors import run_program
 from training.checkpoint import load_weights, read_checkpoint, write_checkpoint
 from training.compact import pack
 from training.config import TrainingConfig
 from training.data import Batch, Stream, augment
 from training.distributed import WHOLE, Processes, Share
 from training.early_stop import Patience
-from training.errors import CheckpointError, NotFiniteError, TrainingError, run_program
+from training.errors import CheckpointError, NotFiniteError, TrainingError
 from training.evaluate import (
     AXES,
     CLASSES,

@@ -7,7 +7,7 @@ from pathlib import Path
 from statistics import median
 from typing import Optional, TypedDict
 
-from training import markdown
+from tooling import markdown
 
 HEADER = (
     "mode",

@@ -24,7 +24,7 @@ from evaluation.live.drive import free_port
 from tests.bench import clients
 from tests.bench.contention import Drive, daemon_program, drive
 from tests.bench.document import ROOT
-from training.markdown import table
+from tooling.markdown import table
 
 
 # The threads that a pose passes through, from the cameras' frames to the bus.

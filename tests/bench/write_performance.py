@@ -14,8 +14,8 @@ from pathlib import Path
 from evaluation.figures import frame_stages, source
 from evaluation.figures.program import bevloc_program
 from tests.bench.document import ROOT, write_table
-from training.errors import run_program
-from training.markdown import table
+from tooling.errors import run_program
+from tooling.markdown import table
 
 FIGURE = ROOT / "docs/images" / frame_stages.FILE
 SWEEPS = ("cameras", "image", "bev", "hypotheses", "map")

@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 from evaluation.campaign import table
-from training.errors import MarksError
+from tooling.errors import MarksError
 
 
 def row(seed: int, beyond_s: float, detection_s: float | None) -> table.Row:

@@ -69,10 +69,10 @@ class EvaluateTest(unittest.TestCase):
     def test_says_when_a_drive_fails(self) -> None:
         self.config.write_text("calibration: {rig: a.yaml}\n")
         with mock.patch.object(self.script, "PROGRAM", Path("/bin/false")):
-            with contextlib.redirect_stdout(io.StringIO()), self.assertRaises(self.script.BadInput):
+            with self.assertRaises(self.script.UserError):
                 self.script.run_drive(1, None, self.config, self.drive_options())
         with mock.patch.object(self.script, "PROGRAM", self.config.parent / "no"):
-            with self.assertRaisesRegex(self.script.BadInput, "found no program that runs"):
+            with self.assertRaisesRegex(self.script.UserError, "found no program that runs"):
                 self.script.run_drive(1, None, self.config, self.drive_options())
 
     def test_a_map_file_of_the_configuration_is_an_imported_map_too(self) -> None:

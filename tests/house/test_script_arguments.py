@@ -83,7 +83,7 @@ class FreshClone(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.work = pathlib.Path(folder.name)
         self.stubs = StubPrograms(self.work / "script")
-        (self.work / "training").symlink_to(ROOT / "training")
+        (self.work / "tooling").symlink_to(ROOT / "tooling")
 
     def run_script(self, name: str) -> subprocess.CompletedProcess[str]:
         shutil.copy(ROOT / "script" / name, self.work / "script")
@@ -98,8 +98,8 @@ class FreshClone(unittest.TestCase):
             self.assertEqual(done.returncode, 1)
             self.assertEqual(
                 done.stderr,
-                f"script/{name}: {self.work}/build/release/bin/{program}: found no program that "
-                "runs (No such file or directory), wanted that of script/build\n",
+                f"{self.work}/build/release/bin/{program}: found no program that runs "
+                "(No such file or directory), wanted that of script/build\n",
             )
 
     def test_docs_sheet_builds_what_it_needs(self) -> None:

@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from tooling.markdown import row, table
 from training.data import Batch, view_table
-from training.markdown import row, table
 from training.model import IMAGE_OFFSET
 from training.runtime import NativeNetwork
 from training.sources import simulator_batches

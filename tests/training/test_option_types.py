@@ -1,4 +1,5 @@
-"""Tests the types of command line options, and programs that use them."""
+"""Tests programs that refuse their options."""
+
 
 from __future__ import annotations
 
@@ -6,27 +7,10 @@ import contextlib
 import io
 import sys
 import unittest
-from argparse import ArgumentTypeError
 from collections.abc import Callable
 from unittest.mock import patch
 
 from training import drive_report, evaluate, export_onnx, picture_statistics
-from training.option_types import above_zero, positive, whole_number
-
-
-class Types(unittest.TestCase):
-    def refused(self, kind: Callable[[str], object], *texts: str) -> None:
-        for text in texts:
-            with self.assertRaisesRegex(ArgumentTypeError, f"found '{text}', wanted a"):
-                kind(text)
-
-    def test_whole_numbers(self):
-        self.assertEqual((positive("1"), whole_number(0)("0")), (1, 0))
-        self.refused(positive, "0", "-1", "1.5", "one", "")
-
-    def test_numbers_above_zero(self):
-        self.assertEqual(above_zero("3e-5"), 3e-5)
-        self.refused(above_zero, "0", "-1", "nan", "inf", "one", "")
 
 
 class Programs(unittest.TestCase):

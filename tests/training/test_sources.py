@@ -15,12 +15,13 @@ import torch
 
 from tests.training.nuscenes_tree import SAMPLES_PER_SCENE, VERSION, write_tree
 from tests.training.untrained import untrained_network
+from tooling.errors import run_program
 from training import evaluate
 from training.checkpoint import state_of_weights
 from training.config import FIRST_VALIDATION_SEED, TrainingConfig
 from training.data import NUISANCES, Batch
 from training.distributed import WHOLE, Share
-from training.errors import TrainingError, run_program
+from training.errors import TrainingError
 from training.nuscenes.errors import NuscenesError
 from training.sources import (
     nuscenes_batches,

@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from tooling.option_types import whole_number
 from training.nuscenes.camera import HEIGHT_PX, WIDTH_PX, look_through
 from training.nuscenes.dataset import NuscenesDataset, View
 from training.nuscenes.errors import NuscenesError
 from training.nuscenes.geometry import inverse_se3
 from training.nuscenes.problems import Problems
-from training.option_types import whole_number
 
 EXIT_BAD_SAMPLES = 1
 EXIT_BAD_TREE = 2

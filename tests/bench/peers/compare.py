@@ -21,9 +21,9 @@ import numpy as np
 from evaluation.figures.program import bevloc_program
 from tests.bench.document import ROOT, write_table
 from tests.training.onnxruntime_check import modules_folder, what_is_missing
+from tooling.errors import run_program
+from tooling.markdown import table
 from training.data import view_table
-from training.errors import run_program
-from training.markdown import table
 from training.model import IMAGE_OFFSET
 
 _HERE = Path(__file__).resolve().parent

@@ -7,7 +7,7 @@ from pathlib import Path
 from tests.bench.document import DOCUMENT, write_table
 from tests.bench.peers.compare import Comparison, table_of
 from tests.bench.write_performance import SWEEPS, columns_of, sweep_table
-from training.errors import MarksError
+from tooling.errors import MarksError
 
 
 class ComparisonTest(unittest.TestCase):

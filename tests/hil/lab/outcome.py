@@ -2,7 +2,7 @@
 
 import dataclasses
 
-from training import markdown
+from tooling import markdown
 
 HEADER = ("scenario", "injected", "seen", "recovery", "")
 

@@ -16,7 +16,7 @@ from tests.hil.vehicle_image.disk import Disk
 from tests.hil.vehicle_image.machine import Parts
 from tests.hil.vehicle_image.repository import PACKAGE, Repositories
 from tests.hil.vehicle_image.scenarios import SCENARIOS
-from training.option_types import positive
+from tooling.option_types import positive
 
 HERE = pathlib.Path("tests/hil/vehicle_image")
 # In the machine, /lab has the layout of the tree, because configurations use relative paths.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from training.errors import MarksError
+from tooling.errors import MarksError
 
 
 def row(cells: Iterable[str]) -> str:
