@@ -1,4 +1,5 @@
-"""The program behind script/hil: boots the guest once and plays scenarios in it."""
+"""The program behind script/hil: boots the guest once and plays scenarios in it. With --check, it
+only checks the options, before script/hil builds what the scenarios need."""
 
 import argparse
 import functools
@@ -15,6 +16,8 @@ from tests.hil.lab.scenarios import SCENARIOS
 
 def main() -> int:
     arguments = _arguments()
+    if arguments.check:
+        return 0
     # An interrupted run must stop its processes too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     folders = Folders(*(getattr(arguments, f).resolve() for f in Folders.__dataclass_fields__))
@@ -31,8 +34,10 @@ def main() -> int:
 
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="script/hil", description=__doc__)
+    parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
+    runs = "--check" not in sys.argv
     for folder in Folders.__dataclass_fields__:
-        parser.add_argument(f"--{folder}", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
+        parser.add_argument(f"--{folder}", type=pathlib.Path, required=runs, help=argparse.SUPPRESS)
     parser.add_argument(
         "--driver",
         choices=("v4l2", "libcamera", "none"),
@@ -48,7 +53,7 @@ def _arguments() -> argparse.Namespace:
         parser.error(f"found no scenario, wanted one or more of {', '.join(SCENARIOS)}")
     for name in arguments.names:
         if name not in SCENARIOS:
-            parser.error(f"no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")
+            parser.error(f"found no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")
         if SCENARIOS[name].needs_usb and arguments.driver == "none":
             parser.error(f"'{name}' needs cameras, found --driver none")
     return arguments

@@ -1,4 +1,5 @@
-"""The program behind script/try-image: makes the vehicle's disk and plays scenarios with it."""
+"""The program behind script/try-image: makes the vehicle's disk and plays scenarios with it. With
+--check, it only checks the options, before script/try-image builds what the scenarios need."""
 
 import argparse
 import functools
@@ -26,6 +27,8 @@ _OF_THE_SYSTEM = ("libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so")
 
 def main() -> int:
     arguments = _arguments()
+    if arguments.check:
+        return 0
     # An interrupted run must stop its processes too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     work, results = arguments.work.resolve(), arguments.results.resolve()
@@ -52,8 +55,10 @@ def main() -> int:
 
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="script/try-image", description=__doc__)
+    parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
+    runs = "--check" not in sys.argv
     for folder in ("build", "pictures", "results", "work"):
-        parser.add_argument(f"--{folder}", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
+        parser.add_argument(f"--{folder}", type=pathlib.Path, required=runs, help=argparse.SUPPRESS)
     parser.add_argument(
         "--packages",
         type=pathlib.Path,
@@ -67,7 +72,7 @@ def _arguments() -> argparse.Namespace:
     arguments = parser.parse_args()
     for name in arguments.names:
         if name not in SCENARIOS:
-            parser.error(f"no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")
+            parser.error(f"found no scenario '{name}', wanted one of {', '.join(SCENARIOS)}")
     found = len(list(arguments.packages.glob(PACKAGE)))
     if found != 1 and not arguments.keep_disk:
         parser.error(
